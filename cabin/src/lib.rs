@@ -1,0 +1,46 @@
+//! The bus: constants, heat flows, balances, doors, sun on the shell, COP and thermal comfort.
+//!
+//! Pure functions on plain structs. The model is that of Widmer, van Dooren and Onder, "Optimization of the
+//! Energy-Comfort Trade-Off of HVAC Systems in Electric City Buses Based on a Steady-State Model" (Control Engineering
+//! Practice 2025, 106158), called *the paper* here; equations are cited by their label in its source. Temperatures are
+//! in kelvin, heat flows in watt, positive in the direction that their name says.
+//!
+//! The vocabulary of the whole program lives here too: [`Disturbances`] of a sample, a [`Design`], a [`ComfortWindow`].
+
+mod balance;
+mod clothing;
+mod cop;
+mod design;
+mod disturbances;
+mod passengers;
+mod pmv;
+mod solar;
+mod vehicle;
+pub mod view_factor;
+mod window;
+
+pub use balance::{Cabin, HeatFlows, Heaters, Slopes, Temperatures};
+pub use clothing::clothing_insulation_clo;
+pub use cop::{Cop, CopError, named_cooling_cops, named_heating_cops};
+pub use design::{Design, Heating};
+pub use disturbances::{Disturbances, DisturbancesError};
+pub use passengers::{Panel, PassengerViews, ceiling_panels, panel_view_factor, place_passengers};
+pub use pmv::{PmvModel, PmvPoint, StandardRange, predicted_percentage_dissatisfied, water_vapour_pressure_pa};
+pub use solar::{SolarGains, roof_irradiance_w_m2, wall_irradiance_w_m2};
+pub use vehicle::{Vehicle, VehicleError};
+pub use window::{ComfortWindow, WindowError};
+
+/// 0 °C in kelvin.
+pub const ZERO_CELSIUS_K: f64 = 273.15;
+
+/// Kelvin from degrees Celsius.
+#[must_use]
+pub fn kelvin(celsius: f64) -> f64 {
+    celsius + ZERO_CELSIUS_K
+}
+
+/// Degrees Celsius from kelvin.
+#[must_use]
+pub fn celsius(kelvin: f64) -> f64 {
+    kelvin - ZERO_CELSIUS_K
+}

@@ -1,0 +1,143 @@
+//! Where passengers stand, and how much of the radiant heaters they see.
+
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+
+use crate::Vehicle;
+use crate::view_factor::{parallel, perpendicular};
+
+/// A radiant heater on the ceiling: its extent along and across the bus in m.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Panel {
+    /// From and to along the bus.
+    pub along_m: [f64; 2],
+    /// From and to across the bus.
+    pub across_m: [f64; 2],
+}
+
+/// The view factors to all radiant heaters of passengers who are spread over the cabin.
+///
+/// For a smooth function f of the view factor, the mean over the passengers is `Σ weight · f(node)` with the two nodes of
+/// Gauss' quadrature for the distribution of the view factors: exact where f is a cubic, and for the vote good to 1e-8.
+/// Where the vote has its kink between the passengers, the mean goes over all of them ([`crate::Cabin::mean_pmv`]).
+#[derive(Debug, Clone, PartialEq)]
+pub struct PassengerViews {
+    all: Vec<f64>,
+    pub(crate) nodes: [(f64, f64); 2],
+    pub(crate) range: [f64; 2],
+    mean: f64,
+}
+
+/// The panels of a vehicle: centred in a grid of equal fields on the ceiling.
+#[must_use]
+pub fn ceiling_panels(vehicle: &Vehicle) -> Vec<Panel> {
+    let field_along_m = vehicle.cabin_length_m / f64::from(vehicle.panel_rows);
+    let field_across_m = vehicle.cabin_width_m / f64::from(vehicle.panel_columns);
+    let span = |index: u32, field_m: f64, extent_m: f64| {
+        let centre_m = (f64::from(index) + 0.5) * field_m;
+        [centre_m - extent_m / 2.0, centre_m + extent_m / 2.0]
+    };
+    let row = |r| {
+        (0..vehicle.panel_columns).map(move |c| Panel {
+            along_m: span(r, field_along_m, vehicle.panel_length_m),
+            across_m: span(c, field_across_m, vehicle.panel_width_m),
+        })
+    };
+    (0..vehicle.panel_rows).flat_map(row).collect()
+}
+
+/// Area-weighted view factor of one passenger's five faces to all panels.
+///
+/// The passenger is an upright cuboid (paper, section 2.2) centred at `along_m`, `across_m` on the floor; passengers do
+/// not hide the panels from each other. Parts of a panel behind a face's plane do not count for that face.
+#[must_use]
+pub fn panel_view_factor(vehicle: &Vehicle, panels: &[Panel], along_m: f64, across_m: f64) -> f64 {
+    let (half, height) = (vehicle.passenger_width_m / 2.0, vehicle.passenger_height_m);
+    let top_gap_m = vehicle.cabin_height_m - height;
+    let (x, y) = ([along_m - half, along_m + half], [across_m - half, across_m + half]);
+    // Distance of a side face's lower and upper edge from the ceiling, where its plane meets the panels' plane.
+    let below_m = [top_gap_m, vehicle.cabin_height_m];
+
+    let (side_area, top_area) = (vehicle.passenger_width_m * height, vehicle.passenger_width_m.powi(2));
+    let mut sum = 0.0;
+    for panel in panels {
+        sum += top_area * parallel(x, y, panel.along_m, panel.across_m, top_gap_m);
+        let mut side = |common, panel_common, ahead: [f64; 2]| {
+            let ahead = [ahead[0].max(0.0), ahead[1].max(0.0)];
+            if ahead[1] > ahead[0] {
+                sum += side_area * perpendicular(common, below_m, panel_common, ahead);
+            }
+        };
+        side(y, panel.across_m, [panel.along_m[0] - x[1], panel.along_m[1] - x[1]]);
+        side(y, panel.across_m, [x[0] - panel.along_m[1], x[0] - panel.along_m[0]]);
+        side(x, panel.along_m, [panel.across_m[0] - y[1], panel.across_m[1] - y[1]]);
+        side(x, panel.along_m, [y[0] - panel.across_m[1], y[0] - panel.across_m[0]]);
+    }
+    sum / (4.0 * side_area + top_area)
+}
+
+/// View factors of passengers who stand anywhere on the floor with equal probability, in the order of their placement.
+#[must_use]
+pub fn place_passengers(vehicle: &Vehicle) -> Vec<f64> {
+    let panels = ceiling_panels(vehicle);
+    let mut random = ChaCha8Rng::seed_from_u64(vehicle.passenger_seed);
+    let half = vehicle.passenger_width_m / 2.0;
+    let mut within = |extent_m: f64| {
+        // 53 random bits make a uniform number in [0, 1).
+        let unit = (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
+        half + unit * (extent_m - 2.0 * half)
+    };
+    (0..vehicle.passenger_placements)
+        .map(|_| {
+            let (along_m, across_m) = (within(vehicle.cabin_length_m), within(vehicle.cabin_width_m));
+            panel_view_factor(vehicle, &panels, along_m, across_m)
+        })
+        .collect()
+}
+
+impl PassengerViews {
+    /// The quadrature for a vehicle's placed passengers.
+    #[must_use]
+    pub fn new(vehicle: &Vehicle) -> Self {
+        Self::from_view_factors(&place_passengers(vehicle))
+    }
+
+    /// Equally weighted passengers with the given view factors, at least one.
+    #[must_use]
+    pub fn from_view_factors(views: &[f64]) -> Self {
+        let mean_of = |f: &dyn Fn(f64) -> f64| views.iter().map(|&v| f(v)).sum::<f64>() / views.len() as f64;
+        let mean = mean_of(&|v| v);
+        let variance = mean_of(&|v| (v - mean).powi(2));
+        // The nodes keep mean, variance and third central moment.
+        let half_skew = if variance > 0.0 { mean_of(&|v| (v - mean).powi(3)) / (2.0 * variance) } else { 0.0 };
+        let spread = half_skew.hypot(variance.sqrt());
+        let (low, high) = (half_skew - spread, half_skew + spread);
+        let high_weight = if spread > 0.0 { -low / (high - low) } else { 0.5 };
+        let least = views.iter().copied().fold(f64::INFINITY, f64::min);
+        let largest = views.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        Self {
+            all: views.to_vec(),
+            nodes: [(mean + low, 1.0 - high_weight), (mean + high, high_weight)],
+            range: [least, largest],
+            mean,
+        }
+    }
+
+    /// The view factor of every passenger, in the order of their placement.
+    #[must_use]
+    pub fn all(&self) -> &[f64] {
+        &self.all
+    }
+
+    /// The two nodes `(view factor, weight)` of the quadrature; the weights sum to 1.
+    #[must_use]
+    pub fn nodes(&self) -> [(f64, f64); 2] {
+        self.nodes
+    }
+
+    /// Mean view factor: that of the average passenger.
+    #[must_use]
+    pub fn mean(&self) -> f64 {
+        self.mean
+    }
+}

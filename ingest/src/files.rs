@@ -1,0 +1,169 @@
+//! Finding files and reading their bytes.
+
+use std::fs::File;
+use std::io::{BufReader, Read};
+use std::path::{Path, PathBuf};
+use zip::ZipArchive;
+
+use crate::{Finding, FindingKind, IngestError};
+
+/// Largest file or archive entry that is read: five times the longest mission of ZTBus. What claims more, or unpacks
+/// to more, is refused before it fills the memory.
+const MAX_BYTES: u64 = 128 << 20;
+
+/// The bytes of a file and their hash.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Content {
+    /// The bytes.
+    pub bytes: Vec<u8>,
+    /// BLAKE3 of the bytes, hexadecimal.
+    pub blake3: String,
+}
+
+impl Content {
+    /// Bytes with their hash.
+    #[must_use]
+    pub fn new(bytes: Vec<u8>) -> Self {
+        let blake3 = blake3::hash(&bytes).to_hex().to_string();
+        Self { bytes, blake3 }
+    }
+
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// A finding that says why it cannot be read.
+    pub fn read(path: &Path) -> Result<Self, Finding> {
+        Self::read_into(path, Vec::new())
+    }
+
+    /// Reads a file into a buffer that another one no longer needs.
+    pub(crate) fn read_into(path: &Path, buffer: Vec<u8>) -> Result<Self, Finding> {
+        let file = File::open(path).map_err(|e| unreadable(&e))?;
+        let size = file.metadata().map_err(|e| unreadable(&e))?.len();
+        limited(file, size, buffer)
+    }
+
+    /// Reads an entry of an archive.
+    ///
+    /// # Errors
+    /// A finding that says why it cannot be read.
+    pub(crate) fn read_entry(archive: &Path, index: usize, buffer: Vec<u8>) -> Result<Self, Finding> {
+        let mut archive = open_archive(archive).map_err(|e| unreadable(&e))?;
+        let entry = archive.by_index(index).map_err(|e| unreadable(&e))?;
+        let size = entry.size();
+        limited(entry, size, buffer)
+    }
+}
+
+fn limited(source: impl Read, size: u64, mut bytes: Vec<u8>) -> Result<Content, Finding> {
+    let too_large = || {
+        let message = format!("it holds more than {} MiB; no mission or weather file is that large", MAX_BYTES >> 20);
+        Finding::whole(FindingKind::Unreadable, message)
+    };
+    if size > MAX_BYTES {
+        return Err(too_large());
+    }
+    bytes.clear();
+    bytes.reserve(usize::try_from(size).unwrap_or(0));
+    source.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(|e| unreadable(&e))?;
+    if bytes.len() as u64 > MAX_BYTES {
+        return Err(too_large());
+    }
+    Ok(Content::new(bytes))
+}
+
+fn unreadable(error: &dyn std::error::Error) -> Finding {
+    Finding::whole(FindingKind::Unreadable, format!("cannot be read: {error}; check the file and its permissions"))
+}
+
+/// Opens an archive; its entries are read one by one, nothing is unpacked to disk.
+pub(crate) fn open_archive(path: &Path) -> Result<ZipArchive<BufReader<File>>, zip::result::ZipError> {
+    ZipArchive::new(BufReader::new(File::open(path)?))
+}
+
+/// The files that a path of the study names: all files of a folder, the matches of a glob, or one file; sorted.
+pub(crate) fn list(base: &Path, pattern: &str) -> Result<Vec<PathBuf>, IngestError> {
+    let path = base.join(pattern);
+    let error = |reason: String| IngestError::Path { path: path.clone(), reason };
+    let mut files = Vec::new();
+    if path.is_dir() {
+        for entry in std::fs::read_dir(&path).map_err(|e| error(e.to_string()))? {
+            files.push(entry.map_err(|e| error(e.to_string()))?.path());
+        }
+    } else if path.exists() {
+        files.push(path.clone());
+    } else if pattern.contains(['*', '?', '[']) {
+        let base = glob::Pattern::escape(&base.to_string_lossy());
+        let full = Path::new(&base).join(pattern);
+        for entry in glob::glob(&full.to_string_lossy()).map_err(|e| error(format!("not a valid pattern: {e}")))? {
+            files.push(entry.map_err(|e| error(e.to_string()))?);
+        }
+    } else {
+        return Err(error("there is no such file or folder".to_owned()));
+    }
+    files.retain(|f| f.is_file());
+    files.sort();
+    Ok(files)
+}
+
+/// A path as the study names it: relative to the study file where it lies below it.
+pub(crate) fn label(base: &Path, path: &Path) -> String {
+    path.strip_prefix(base).unwrap_or(path).to_string_lossy().replace('\\', "/")
+}
+
+/// The lower-case extension of a path.
+pub(crate) fn extension(path: &Path) -> String {
+    path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default()
+}
+
+/// Refuses what is no text in UTF-8 or a superset of ASCII, with the line of the first bad byte.
+pub(crate) fn check_text(bytes: &[u8], utf8: bool) -> Result<(), Finding> {
+    let finding = |message: String, at: usize| {
+        let line = 1 + bytes[..at].iter().filter(|&&b| b == b'\n').count() as u64;
+        Err(Finding::whole(FindingKind::WrongEncoding, message).at_line(line))
+    };
+    if bytes.iter().all(u8::is_ascii_whitespace) {
+        let message = "the file is empty; fetch or export it again";
+        return Err(Finding::whole(FindingKind::Empty, message).at_line(1));
+    }
+    if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
+        return finding("the file is UTF-16; save it as UTF-8".to_owned(), 0);
+    }
+    if let Some(at) = bytes.iter().take(1 << 16).position(|&b| b == 0) {
+        return finding("the file holds zero bytes; it is not text, or UTF-16: save it as UTF-8".to_owned(), at);
+    }
+    if utf8
+        && simdutf8::basic::from_utf8(bytes).is_err()
+        && let Err(error) = std::str::from_utf8(bytes)
+    {
+        let at = error.valid_up_to();
+        let message = format!("byte 0x{:02x} is not UTF-8; convert the file to UTF-8", bytes[at]);
+        return finding(message, at);
+    }
+    Ok(())
+}
+
+/// Positions of the wanted columns in a header, or what is wrong with it.
+pub(crate) fn find_columns(
+    header: &csv::StringRecord,
+    wanted: &[&str],
+    separator: char,
+) -> Result<Vec<usize>, Finding> {
+    let mut positions = Vec::with_capacity(wanted.len());
+    for name in wanted {
+        if let Some(position) = header.iter().position(|h| h.trim() == *name) {
+            positions.push(position);
+            continue;
+        }
+        let other = [';', ',', '\t', '|'].into_iter().find(|&s| s != separator && header.iter().any(|h| h.contains(s)));
+        if let (Some(other), true) = (other, header.len() <= 2) {
+            let message =
+                format!("columns are separated by {other:?}, but {separator:?} belongs there; convert the file");
+            return Err(Finding::whole(FindingKind::WrongDelimiter, message).at_line(1));
+        }
+        let found = header.iter().map(str::trim).collect::<Vec<_>>().join(", ");
+        let message = format!("the column is missing; the file has: {found}");
+        return Err(Finding::whole(FindingKind::MissingColumn, message).at_line(1).in_column(name));
+    }
+    Ok(positions)
+}

@@ -1,0 +1,236 @@
+//! The record of data quality.
+
+use chrono::{DateTime, Utc};
+use std::fmt;
+
+/// What a file holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum FileKind {
+    /// Telemetry of one mission.
+    Mission,
+    /// Weather.
+    Weather,
+    /// Shadow fractions.
+    Shadow,
+}
+
+impl FileKind {
+    /// The name in the database.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Mission => "mission",
+            Self::Weather => "weather",
+            Self::Shadow => "shadow",
+        }
+    }
+}
+
+/// Sorts of findings.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum FindingKind {
+    /// The file or archive entry cannot be read.
+    Unreadable,
+    /// No content, or a header only.
+    Empty,
+    /// Not the encoding that belongs there.
+    WrongEncoding,
+    /// Columns separated by something else.
+    WrongDelimiter,
+    /// A needed column is missing.
+    MissingColumn,
+    /// The file's name is not one of a mission.
+    NotAMission,
+    /// An archive entry whose path leaves the archive.
+    UnsafePath,
+    /// A mission that is there already, or runs while the bus is on another one.
+    Overlap,
+    /// Rows that cannot be used.
+    RefusedRow,
+    /// Values that cannot be read.
+    RefusedValue,
+    /// Values outside the physical range, taken as missing.
+    OutOfRange,
+    /// Values in another unit than the column's.
+    WrongUnit,
+    /// Values that are missing where there should be some.
+    MissingValue,
+    /// Small negative irradiances, taken as 0.
+    NegativeOffset,
+    /// The same time again; the first row counts.
+    DuplicateRow,
+    /// Steps of time without a row.
+    TimeGap,
+    /// Intervals that were interpolated.
+    Interpolated,
+    /// The file ends before its name says.
+    Truncated,
+}
+
+impl FindingKind {
+    /// The name in the database.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Unreadable => "unreadable",
+            Self::Empty => "empty",
+            Self::WrongEncoding => "wrong_encoding",
+            Self::WrongDelimiter => "wrong_delimiter",
+            Self::MissingColumn => "missing_column",
+            Self::NotAMission => "not_a_mission",
+            Self::UnsafePath => "unsafe_path",
+            Self::Overlap => "overlap",
+            Self::RefusedRow => "refused_row",
+            Self::RefusedValue => "refused_value",
+            Self::OutOfRange => "out_of_range",
+            Self::WrongUnit => "wrong_unit",
+            Self::MissingValue => "missing_value",
+            Self::NegativeOffset => "negative_offset",
+            Self::DuplicateRow => "duplicate_row",
+            Self::TimeGap => "time_gap",
+            Self::Interpolated => "interpolated",
+            Self::Truncated => "truncated",
+        }
+    }
+}
+
+/// Something noticed in a file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Finding {
+    /// What sort.
+    pub kind: FindingKind,
+    /// How often.
+    pub count: u64,
+    /// First line concerned; the header is line 1.
+    pub line: Option<u64>,
+    /// Column concerned.
+    pub column: Option<String>,
+    /// What it is and what to do.
+    pub message: String,
+}
+
+impl Finding {
+    /// A finding about a whole file.
+    #[must_use]
+    pub fn whole(kind: FindingKind, message: impl Into<String>) -> Self {
+        Self { kind, count: 1, line: None, column: None, message: message.into() }
+    }
+
+    /// The same at a line.
+    #[must_use]
+    pub fn at_line(mut self, line: u64) -> Self {
+        self.line = Some(line);
+        self
+    }
+
+    /// The same in a column.
+    #[must_use]
+    pub fn in_column(mut self, column: &str) -> Self {
+        self.column = Some(column.to_owned());
+        self
+    }
+
+    /// The same, seen `count` times.
+    #[must_use]
+    pub fn times(mut self, count: u64) -> Self {
+        self.count = count;
+        self
+    }
+}
+
+/// `line 7, column time_unix: what it is and what to do`
+impl fmt::Display for Finding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (self.line, &self.column) {
+            (Some(line), Some(column)) => write!(f, "line {line}, column {column}: ")?,
+            (Some(line), None) => write!(f, "line {line}: ")?,
+            (None, Some(column)) => write!(f, "column {column}: ")?,
+            (None, None) => {}
+        }
+        f.write_str(&self.message)
+    }
+}
+
+/// What is known of an input file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FileRecord {
+    /// Path as the study names it; an archive's entry follows a `!`.
+    pub path: String,
+    /// What it holds.
+    pub kind: FileKind,
+    /// BLAKE3 of the content, hexadecimal; empty where there is none.
+    pub blake3: String,
+    /// Size in bytes.
+    pub bytes: u64,
+    /// Data rows, without the header.
+    pub rows: u64,
+    /// First time in the file.
+    pub first: Option<DateTime<Utc>>,
+    /// Last time in the file.
+    pub last: Option<DateTime<Utc>>,
+    /// Whether the file is used.
+    pub accepted: bool,
+    /// What was noticed; a refused file has at least one.
+    pub findings: Vec<Finding>,
+}
+
+impl FileRecord {
+    /// The record of a file that cannot be used.
+    #[must_use]
+    pub fn refused(path: &str, kind: FileKind, blake3: &str, bytes: u64, finding: Finding) -> Self {
+        Self {
+            path: path.to_owned(),
+            kind,
+            blake3: blake3.to_owned(),
+            bytes,
+            rows: 0,
+            first: None,
+            last: None,
+            accepted: false,
+            findings: vec![finding],
+        }
+    }
+}
+
+/// Why a segment gives no sample.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum ExclusionReason {
+    /// The last part of a mission, shorter than a segment.
+    Partial {
+        /// Length of a segment in s.
+        segment_s: u32,
+    },
+    /// Too many seconds without telemetry.
+    TelemetryGap,
+    /// The weather record has a gap that is too long to interpolate.
+    WeatherGap {
+        /// Longest gap that is interpolated, in s.
+        max_gap_s: u32,
+    },
+    /// The weather record does not reach there.
+    OutsideWeather,
+}
+
+impl fmt::Display for ExclusionReason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Partial { segment_s } => write!(f, "last part of the mission, shorter than {segment_s} s"),
+            Self::TelemetryGap => f.write_str("more than 1 % of the seconds have no telemetry"),
+            Self::WeatherGap { max_gap_s } => write!(f, "weather gap longer than {max_gap_s} s"),
+            Self::OutsideWeather => f.write_str("outside the weather record"),
+        }
+    }
+}
+
+/// A segment that gives no sample.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ExcludedSegment {
+    /// Name of the mission.
+    pub mission: String,
+    /// Number of the segment, from 0.
+    pub segment: u32,
+    /// Its start.
+    pub start: DateTime<Utc>,
+    /// Why.
+    pub reason: ExclusionReason,
+}

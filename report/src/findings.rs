@@ -1,0 +1,130 @@
+//! What the paper finds, beside what this study finds.
+
+use crate::StudyReport;
+
+/// Whether a study agrees with the paper.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    /// Within the paper's range, in the paper's rounding.
+    Within,
+    /// Outside of it.
+    Outside,
+    /// The study lacks the designs or windows for it.
+    NotCovered,
+}
+
+impl Verdict {
+    /// The word in tables.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Within => "within",
+            Self::Outside => "outside",
+            Self::NotCovered => "not covered",
+        }
+    }
+}
+
+/// One finding, side by side.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PaperFinding {
+    /// What is compared.
+    pub claim: &'static str,
+    /// What the paper says.
+    pub paper: &'static str,
+    /// What this study says.
+    pub ours: String,
+    /// Whether they agree.
+    pub verdict: Verdict,
+}
+
+/// The findings of the paper's section "Case Study 1" and of the setpoint section (PMV range comparison). Percentages
+/// are compared as whole ones, as the paper prints them.
+#[must_use]
+pub fn paper_findings(study: &StudyReport) -> Vec<PaperFinding> {
+    vec![
+        change(study, "radiant heaters with PTC heating", "−5 … −7 %", ("ptc", "ptc+rh"), -7.0..=-5.0),
+        change(study, "heat pump instead of PTC", "−50 … −60 %", ("ptc", "hp"), -60.0..=-50.0),
+        change(study, "air curtain with heat pump, further", "−10 … −20 %", ("hp", "hp+curtain"), -20.0..=-10.0),
+        change(study, "radiant heaters with heat pump", "nothing", ("hp", "hp+rh"), -0.5..=0.5),
+        share(study, "lower limit active at PMV ±1", "almost 50 %", |s| s.lower_count, 40.0..=50.0),
+        share(study, "cooling at PMV ±1", "less than 20 %", |s| s.cooling_count, 0.0..=20.0),
+        neutral_power(study),
+    ]
+}
+
+/// Relative change of the annual power from one design to another, over all windows.
+fn change(
+    study: &StudyReport,
+    claim: &'static str,
+    paper: &'static str,
+    (from, to): (&str, &str),
+    range_percent: std::ops::RangeInclusive<f64>,
+) -> PaperFinding {
+    let changes: Vec<f64> = study
+        .windows()
+        .into_iter()
+        .filter_map(|w| Some((study.annual_power_w(from, w)?, study.annual_power_w(to, w)?)))
+        .filter(|(from_w, _)| *from_w > 0.0)
+        .map(|(from_w, to_w)| 100.0 * (to_w / from_w - 1.0))
+        .collect();
+    if changes.is_empty() {
+        return not_covered(claim, paper);
+    }
+    let least = changes.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = changes.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let agrees = [least, most].iter().all(|c| range_percent.contains(&c.round()));
+    PaperFinding {
+        claim,
+        paper,
+        ours: format!("{} … {} % over all windows", signed(most), signed(least)),
+        verdict: if agrees { Verdict::Within } else { Verdict::Outside },
+    }
+}
+
+/// Share of the samples of the best equipped heat pump bus at PMV ±1.
+fn share(
+    study: &StudyReport,
+    claim: &'static str,
+    paper: &'static str,
+    count: impl Fn(&store::LimitShare) -> u64,
+    range_percent: std::ops::RangeInclusive<f64>,
+) -> PaperFinding {
+    let at_one = || study.limit_shares.iter().filter(|s| s.pmv_min == -1.0 && s.pmv_max == 1.0);
+    let found = at_one().find(|s| s.design == "hp+curtain").or_else(|| at_one().next());
+    let Some(row) = found.filter(|s| s.solved_count > 0) else { return not_covered(claim, paper) };
+    let percent = 100.0 * count(row) as f64 / row.solved_count as f64;
+    PaperFinding {
+        claim,
+        paper,
+        ours: format!("{percent:.1} % of the samples of {}", row.design),
+        verdict: if range_percent.contains(&percent.round()) { Verdict::Within } else { Verdict::Outside },
+    }
+}
+
+/// Not the paper's number: an estimate made from its model independently of this program.
+fn neutral_power(study: &StudyReport) -> PaperFinding {
+    let (claim, paper) = ("PTC at PMV 0", "about 7.2 kW (independent estimate, not printed in the paper)");
+    match study.annual_power_w("ptc", (0.0, 0.0)) {
+        None => not_covered(claim, paper),
+        Some(power_w) => PaperFinding {
+            claim,
+            paper,
+            ours: format!("{:.2} kW", power_w / 1000.0),
+            verdict: if (6500.0..=7900.0).contains(&power_w) { Verdict::Within } else { Verdict::Outside },
+        },
+    }
+}
+
+fn not_covered(claim: &'static str, paper: &'static str) -> PaperFinding {
+    PaperFinding { claim, paper, ours: "–".to_owned(), verdict: Verdict::NotCovered }
+}
+
+fn signed(percent: f64) -> String {
+    let text = format!("{:.1}", percent.abs());
+    match (text == "0.0", percent < 0.0) {
+        (true, _) => "0.0".to_owned(),
+        (false, true) => format!("−{text}"),
+        (false, false) => format!("+{text}"),
+    }
+}

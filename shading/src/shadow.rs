@@ -1,0 +1,186 @@
+//! The share of the road that lies in the shade.
+
+use chrono::{DateTime, Datelike, Duration, DurationRound, TimeZone, Timelike, Utc};
+use std::io::Read;
+
+use crate::SunPosition;
+
+const HOURS: usize = 8760;
+
+/// Shadow fractions at the full hours of one reference year, repeated by calendar date.
+///
+/// Between full hours the fraction is linear (paper, section 2.1.3). 29 February takes the values of the 28th.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ShadowYear {
+    /// One value per hour of a year of 365 days, from 1 January 00:00 UTC.
+    hourly: Vec<f64>,
+}
+
+/// Why a shadow file cannot be used. Lines count from 1, the header included.
+#[derive(Debug, thiserror::Error)]
+pub enum ShadowError {
+    /// The file cannot be read as CSV.
+    #[error("{0}; the file needs the comma-separated columns time_utc,shadow_fraction in UTF-8")]
+    Csv(#[from] csv::Error),
+    /// A column is missing.
+    #[error("line 1: the column {0} is missing; the file needs time_utc,shadow_fraction, separated by commas")]
+    Column(&'static str),
+    /// A stamp is not a full hour in RFC 3339.
+    #[error("line {line}, column time_utc: {text:?} is not a full hour in UTC such as 2022-01-01T13:00:00Z")]
+    Time {
+        /// Line of the file.
+        line: u64,
+        /// What stands there.
+        text: String,
+    },
+    /// A fraction is not a number between 0 and 1.
+    #[error("line {line}, column shadow_fraction: {text:?} is not a number from 0 (sun) to 1 (shade)")]
+    Fraction {
+        /// Line of the file.
+        line: u64,
+        /// What stands there.
+        text: String,
+    },
+    /// The same hour of the calendar stands twice.
+    #[error("line {line}: the hour {hour} (month-day hour, UTC) stands twice; keep one reference year only")]
+    Twice {
+        /// Line of the file.
+        line: u64,
+        /// The hour as `MM-DD HH:00`.
+        hour: String,
+    },
+    /// The year is not complete.
+    #[error(
+        "{missing} of 8760 hours are missing, the first is {first} (month-day hour, UTC); give every full hour of one year"
+    )]
+    Incomplete {
+        /// How many hours have no value.
+        missing: usize,
+        /// The first of them as `MM-DD HH:00`.
+        first: String,
+    },
+}
+
+impl ShadowYear {
+    /// Reads `time_utc,shadow_fraction` with one row per full hour of one year; further columns are ignored.
+    ///
+    /// # Errors
+    /// [`ShadowError`] names the line and what belongs there.
+    pub fn read(source: impl Read) -> Result<Self, ShadowError> {
+        // Lines end at \n, so that they count right in files with \r\n; trimming removes the \r.
+        let mut reader =
+            csv::ReaderBuilder::new().terminator(csv::Terminator::Any(b'\n')).trim(csv::Trim::All).from_reader(source);
+        let header = reader.headers()?.clone();
+        let column = |name: &'static str| {
+            let found = header.iter().position(|h| h.trim_start_matches('\u{feff}') == name);
+            found.ok_or(ShadowError::Column(name))
+        };
+        let (time, fraction) = (column("time_utc")?, column("shadow_fraction")?);
+
+        let mut hourly = vec![f64::NAN; HOURS];
+        let mut record = csv::StringRecord::new();
+        while reader.read_record(&mut record)? {
+            let line = record.position().map_or(0, csv::Position::line);
+            let text = &record[time];
+            let bad_time = || ShadowError::Time { line, text: text.to_owned() };
+            let stamp = DateTime::parse_from_rfc3339(text).map_err(|_| bad_time())?.to_utc();
+            if stamp.minute() != 0 || stamp.second() != 0 || stamp.nanosecond() != 0 {
+                return Err(bad_time());
+            }
+            let bad_fraction = || ShadowError::Fraction { line, text: record[fraction].to_owned() };
+            let value: f64 = record[fraction].parse().map_err(|_| bad_fraction())?;
+            if !(0.0..=1.0).contains(&value) {
+                return Err(bad_fraction());
+            }
+            if stamp.month() == 2 && stamp.day() == 29 {
+                continue;
+            }
+            let slot = &mut hourly[hour_of_year(stamp)];
+            if !slot.is_nan() {
+                return Err(ShadowError::Twice { line, hour: stamp.format("%m-%d %H:00").to_string() });
+            }
+            *slot = value;
+        }
+        if let Some(first) = hourly.iter().position(|v| v.is_nan()) {
+            let missing = hourly.iter().filter(|v| v.is_nan()).count();
+            return Err(ShadowError::Incomplete { missing, first: hour_label(first) });
+        }
+        Ok(Self { hourly })
+    }
+
+    /// A year from a function of the hour's number, 0 … 8759 from 1 January 00:00 UTC; values are limited to 0 … 1.
+    #[must_use]
+    pub fn from_fn(fraction: impl FnMut(usize) -> f64) -> Self {
+        Self { hourly: (0..HOURS).map(fraction).map(|f| f.clamp(0.0, 1.0)).collect() }
+    }
+
+    /// The 8760 values from 1 January 00:00 UTC.
+    #[must_use]
+    pub fn hourly(&self) -> &[f64] {
+        &self.hourly
+    }
+
+    /// Shadow fraction at an instant, linear between full hours.
+    #[must_use]
+    pub fn at(&self, instant: DateTime<Utc>) -> f64 {
+        let hour = full_hour(instant);
+        let share = (instant - hour).as_seconds_f64() / 3600.0;
+        let (before, after) = (self.at_full_hour(hour), self.at_full_hour(hour + Duration::hours(1)));
+        before + share * (after - before)
+    }
+
+    /// Mean shadow fraction from `start` to `end`: the exact integral of the linear interpolation.
+    /// For `end <= start` the value at `start`.
+    #[must_use]
+    pub fn mean(&self, start: DateTime<Utc>, end: DateTime<Utc>) -> f64 {
+        if end <= start {
+            return self.at(start);
+        }
+        let mut from = start;
+        let mut integral = 0.0;
+        while from < end {
+            let to = (full_hour(from) + Duration::hours(1)).min(end);
+            let seconds = (to - from).as_seconds_f64();
+            integral += self.at(from + (to - from) / 2) * seconds;
+            from = to;
+        }
+        integral / (end - start).as_seconds_f64()
+    }
+
+    fn at_full_hour(&self, hour: DateTime<Utc>) -> f64 {
+        self.hourly[hour_of_year(hour)]
+    }
+}
+
+/// Shaded share of the floor of a street canyon of infinite length, under direct sun.
+///
+/// With the sun below the horizon the street is in the shade. Else the wall on the sunny side throws a shadow of width
+/// `height · cos(altitude) / sin(altitude) · |sin(azimuth − street)|` across the street (Johnson and Watson 1984,
+/// doi 10.1175/1520-0450(1984)023<0329:TDOVFI>2.0.CO;2).
+///
+/// `height_to_width` is dimensionless and not negative, `street_azimuth_rad` the direction of the street from north.
+#[must_use]
+pub fn canyon_shadow_fraction(sun: SunPosition, street_azimuth_rad: f64, height_to_width: f64) -> f64 {
+    if sun.altitude_rad <= 0.0 {
+        return 1.0;
+    }
+    let across = (sun.azimuth_rad - street_azimuth_rad).sin().abs();
+    (height_to_width * across / sun.altitude_rad.tan()).min(1.0)
+}
+
+fn full_hour(instant: DateTime<Utc>) -> DateTime<Utc> {
+    instant.duration_trunc(Duration::hours(1)).expect("an hour divides every date that chrono can hold")
+}
+
+/// Hour number in a year of 365 days; 29 February counts as the 28th.
+fn hour_of_year(hour: DateTime<Utc>) -> usize {
+    let leap_day = hour.month() == 2 && hour.day() == 29;
+    let after_leap_day = hour.date_naive().leap_year() && hour.month() > 2;
+    let day = hour.ordinal0() as usize - usize::from(leap_day || after_leap_day);
+    day * 24 + hour.hour() as usize
+}
+
+fn hour_label(hour_of_year: usize) -> String {
+    let start = Utc.with_ymd_and_hms(2023, 1, 1, 0, 0, 0).single().expect("1 January 2023 exists");
+    (start + Duration::hours(hour_of_year as i64)).format("%m-%d %H:00").to_string()
+}

@@ -1,0 +1,260 @@
+//! The programs of one sample for all designs and windows, and the cheapest of each four.
+
+use cabin::{Cabin, Disturbances, PassengerViews, Temperatures, Vehicle};
+use rayon::prelude::*;
+
+use super::problem::{DoorLaw, N, Problem, SampleModel, Variable};
+use super::quadratic::{Multipliers, Quadratic};
+use super::sqp::{self, End, Ended};
+use super::vote::VoteForm;
+use crate::{Grid, Infeasible, OperatingMode, Operation, Optimum, Outcome};
+
+/// Heat below this in kW is none: the least that a KKT residual of 1e-8 can tell from zero, with room to spare.
+const NO_HEAT_KW: f64 = 1e-6;
+
+/// What a point has cost to solve.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Effort {
+    /// Programs: one for each choice of heaters and curtain that the design has.
+    pub programs: u32,
+    /// Quadratic subproblems of all of them.
+    pub subproblems: u32,
+    /// Largest scaled KKT residual of the solved ones.
+    pub kkt_residual: f64,
+}
+
+/// Solves points by the paper's method. One solver a thread.
+pub struct NlpSolver<'a> {
+    vehicle: &'a Vehicle,
+    views: &'a PassengerViews,
+    grid: &'a Grid,
+    form: &'a VoteForm,
+    door_law: DoorLaw,
+    quadratic: Quadratic,
+}
+
+impl<'a> NlpSolver<'a> {
+    /// A solver for a grid.
+    #[must_use]
+    pub fn new(
+        vehicle: &'a Vehicle,
+        views: &'a PassengerViews,
+        grid: &'a Grid,
+        form: &'a VoteForm,
+        door_law: DoorLaw,
+    ) -> Self {
+        Self { vehicle, views, grid, form, door_law, quadratic: Quadratic::new() }
+    }
+
+    /// Solves every design and window for one sample, in the order of [`crate::SampleSolver::solve`]. A window starts from
+    /// the one before it; the first from nothing.
+    pub fn solve(&mut self, disturbances: &Disturbances, optima: &mut [Optimum], efforts: &mut [Effort]) {
+        // A solver scales by the first numbers it sees; a new one a sample keeps results free of what came before.
+        self.quadratic = Quadratic::new();
+        let windows = self.grid.windows().len();
+        for (i, optimum) in optima.iter_mut().enumerate() {
+            *optimum = Optimum { design: i / windows, window: i % windows, outcome: Outcome::NotConverged };
+        }
+        for d in 0..self.grid.designs().len() {
+            let range = d * windows..(d + 1) * windows;
+            self.solve_design(disturbances, d, &mut optima[range.clone()], &mut efforts[range]);
+        }
+    }
+
+    /// Solves one point from a cold start.
+    pub fn solve_point(&mut self, disturbances: &Disturbances, design: usize, window: usize) -> (Outcome, Effort) {
+        self.quadratic = Quadratic::new();
+        let model = SampleModel::new(self.vehicle, self.views, disturbances, self.form, self.door_law);
+        let mut best = Best::default();
+        for (curtain, heaters) in self.choices(design) {
+            let problem = self.problem(&model, design, window, curtain, heaters);
+            let end = sqp::solve(&problem, &mut self.quadratic, sqp::cold_start(&problem), Multipliers::default());
+            best.take(&problem, &end);
+        }
+        (best.outcome(self.vehicle, self.views, disturbances), best.effort)
+    }
+
+    fn solve_design(&mut self, d: &Disturbances, design: usize, optima: &mut [Optimum], efforts: &mut [Effort]) {
+        let model = SampleModel::new(self.vehicle, self.views, d, self.form, self.door_law);
+        let mut bests = vec![Best::default(); optima.len()];
+        for (curtain, heaters) in self.choices(design) {
+            let mut neighbour: Option<End> = None;
+            for (window, best) in bests.iter_mut().enumerate() {
+                let problem = self.problem(&model, design, window, curtain, heaters);
+                let (x, multipliers) = match &neighbour {
+                    Some(end) if end.ended == Ended::Solved => (end.x, end.multipliers),
+                    _ => (sqp::cold_start(&problem), Multipliers::default()),
+                };
+                let end = sqp::solve(&problem, &mut self.quadratic, x, multipliers);
+                best.take(&problem, &end);
+                neighbour = Some(end);
+            }
+        }
+        for ((best, optimum), effort) in bests.iter().zip(optima).zip(efforts) {
+            optimum.outcome = best.outcome(self.vehicle, self.views, d);
+            *effort = best.effort;
+        }
+    }
+
+    fn choices(&self, design: usize) -> impl Iterator<Item = (bool, bool)> + use<> {
+        let design = &self.grid.designs()[design];
+        let (curtain, heaters) = (design.air_curtain, design.radiant_heaters);
+        [(false, false), (true, false), (false, true), (true, true)]
+            .into_iter()
+            .filter(move |&(c, h)| (curtain || !c) && (heaters || !h))
+    }
+
+    fn problem<'m>(
+        &self,
+        model: &'m SampleModel<'m>,
+        design: usize,
+        window: usize,
+        curtain: bool,
+        heaters: bool,
+    ) -> Problem<'m>
+    where
+        'a: 'm,
+    {
+        let grid: &'a Grid = self.grid;
+        Problem { model, design: &grid.designs()[design], window: grid.windows()[window], curtain, heaters }
+    }
+}
+
+/// The cheapest of the programs so far.
+#[derive(Debug, Clone, Copy, Default)]
+struct Best {
+    end: Option<(End, bool, bool)>,
+    second_kw: Option<f64>,
+    effort: Effort,
+    lost: bool,
+    infeasible: Option<Infeasible>,
+}
+
+impl Best {
+    fn take(&mut self, problem: &Problem<'_>, end: &End) {
+        self.effort.programs += 1;
+        self.effort.subproblems += end.subproblems;
+        match end.ended {
+            Ended::NotConverged => self.lost = true,
+            Ended::Infeasible => {
+                let cold = end.vote < problem.window.pmv_min();
+                self.infeasible = Some(if cold { Infeasible::TooCold } else { Infeasible::TooWarm });
+            }
+            // Panels that would have to be cooled cannot be held at their target.
+            Ended::Solved if end.x[Variable::RadiantHeaterPower as usize] < -NO_HEAT_KW => {
+                self.infeasible = Some(Infeasible::TooWarm);
+            }
+            Ended::Solved => {
+                self.effort.kkt_residual = self.effort.kkt_residual.max(end.residual);
+                let second_kw = match self.end {
+                    Some((best, ..)) if best.power_kw <= end.power_kw => Some(end.power_kw),
+                    before => {
+                        self.end = Some((*end, problem.curtain, problem.heaters));
+                        before.map(|(best, ..)| best.power_kw)
+                    }
+                };
+                self.second_kw = match (self.second_kw, second_kw) {
+                    (Some(a), Some(b)) => Some(a.min(b)),
+                    (a, b) => a.or(b),
+                };
+            }
+        }
+    }
+
+    fn outcome(&self, vehicle: &Vehicle, views: &PassengerViews, d: &Disturbances) -> Outcome {
+        match (self.lost, self.end, self.infeasible) {
+            (true, ..) => Outcome::NotConverged,
+            (false, Some((end, curtain, heaters)), _) => {
+                let gap_w = self.second_kw.map(|second| 1e3 * (second - end.power_kw));
+                Outcome::Solved(operation(&end, curtain, heaters, vehicle, views, d), gap_w)
+            }
+            (false, None, Some(reason)) => Outcome::Infeasible(reason),
+            (false, None, None) => Outcome::NotConverged,
+        }
+    }
+}
+
+/// The operation that a solved program stands for.
+fn operation(
+    end: &End,
+    curtain: bool,
+    heaters: bool,
+    vehicle: &Vehicle,
+    views: &PassengerViews,
+    d: &Disturbances,
+) -> Operation {
+    let x: &[f64; N] = &end.x;
+    let at = |variable: Variable| x[variable as usize];
+    let cabin = Cabin::new(vehicle, views, d);
+    let temperatures = Temperatures {
+        cabin_k: at(Variable::Cabin),
+        interior_k: at(Variable::Interior),
+        shell_inside_k: at(Variable::ShellInside),
+        shell_outside_k: at(Variable::ShellOutside),
+        radiant_heater_k: at(Variable::RadiantHeater),
+    };
+    let heat_kw = at(Variable::Heat) + at(Variable::Cool);
+    let (mode, air_unit_heat_w) = match heat_kw {
+        kw if kw > NO_HEAT_KW => (OperatingMode::Heating, 1e3 * kw),
+        kw if kw < -NO_HEAT_KW => (OperatingMode::Cooling, 1e3 * kw),
+        _ => (OperatingMode::Passive, 0.0),
+    };
+    let radiant_heater_power_w = if heaters { 1e3 * at(Variable::RadiantHeaterPower) } else { 0.0 };
+    let air_curtain_power_w = if curtain { cabin.air_curtain_power_w() } else { 0.0 };
+    let air_unit_power_w = match mode {
+        OperatingMode::Passive => 0.0,
+        _ => 1e3 * end.power_kw - radiant_heater_power_w - air_curtain_power_w,
+    };
+    Operation {
+        mode,
+        air_curtain_on: curtain,
+        radiant_heaters_on: heaters,
+        air_unit_power_w,
+        radiant_heater_power_w,
+        air_curtain_power_w,
+        air_unit_heat_w,
+        temperatures,
+        mean_radiant_temperature_k: cabin.mean_radiant_temperature_k(&temperatures),
+        pmv: end.vote,
+        standard_range: cabin.standard_range(&temperatures, end.vote),
+    }
+}
+
+/// Samples that one task solves.
+const BLOCK: usize = 8;
+
+/// As [`crate::solve_blocks`], by the paper's method; `consume` also gets what each point has cost.
+pub fn nlp_blocks(
+    vehicle: &Vehicle,
+    grid: &Grid,
+    samples: &[Disturbances],
+    form: &VoteForm,
+    door_law: DoorLaw,
+    mut consume: impl FnMut(usize, &[Optimum], &[Effort]) -> bool,
+) -> bool {
+    let views = PassengerViews::new(vehicle);
+    let points = grid.points();
+    let unsolved = Optimum { design: 0, window: 0, outcome: Outcome::NotConverged };
+    let wave = BLOCK * rayon::current_num_threads() * 4;
+    let mut optima = vec![unsolved; wave.min(samples.len()) * points];
+    let mut efforts = vec![Effort::default(); optima.len()];
+    for (w, wave_samples) in samples.chunks(wave).enumerate() {
+        let count = wave_samples.len() * points;
+        let (optima, efforts) = (&mut optima[..count], &mut efforts[..count]);
+        optima
+            .par_chunks_mut(BLOCK * points)
+            .zip(efforts.par_chunks_mut(BLOCK * points))
+            .zip(wave_samples.par_chunks(BLOCK))
+            .for_each(|((optima, efforts), samples)| {
+                let mut solver = NlpSolver::new(vehicle, &views, grid, form, door_law);
+                let places = optima.chunks_mut(points).zip(efforts.chunks_mut(points));
+                for (sample, (optima, efforts)) in samples.iter().zip(places) {
+                    solver.solve(sample, optima, efforts);
+                }
+            });
+        if !consume(w * wave, optima, efforts) {
+            return false;
+        }
+    }
+    true
+}

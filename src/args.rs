@@ -1,0 +1,158 @@
+//! The command line as it was typed.
+
+use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
+use std::path::PathBuf;
+
+/// What thermal comfort in an electric city bus costs over a whole year.
+///
+/// Exit status: 0 done; 1 finished, but points stayed unsolved or inputs were refused; 2 usage or study file wrong;
+/// 3 inputs or database unusable; 4 interrupted, run again to resume.
+#[derive(Debug, Parser)]
+#[command(version, max_term_width = 100)]
+pub struct Args {
+    #[command(subcommand)]
+    pub command: Command,
+
+    /// How log lines on stderr look.
+    #[arg(long, global = true, value_enum, default_value_t = Log::Text)]
+    pub log: Log,
+
+    /// Only warnings and errors on stderr.
+    #[arg(long, global = true)]
+    pub quiet: bool,
+
+    /// Threads that compute; as many as cores without it. Results do not depend on it.
+    #[arg(long, global = true, value_name = "N")]
+    pub threads: Option<usize>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Log {
+    Text,
+    /// One JSON object a line.
+    Json,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Write a synthetic data set in the real formats, and a study file for it.
+    Demo(DemoArgs),
+    /// Write a commented study file with every default of the paper.
+    Init {
+        /// Folder of the new study.
+        dir: PathBuf,
+    },
+    /// Validate study and inputs without running; estimate points, time and size.
+    Check(StudyArgs),
+    /// Read missions and weather files.
+    Ingest(StudyArgs),
+    /// Join segments with weather, sun and shade to hourly samples.
+    Shade(StudyArgs),
+    /// Find the optimal operation of every sample, design and comfort window that has none yet.
+    Solve(SolveArgs),
+    /// Write tables and figures.
+    Report(StudyArgs),
+    /// All stages, only what is missing; without a study file it makes a demo and runs that.
+    Run(SolveArgs),
+    /// Solve a part of the stored points by another method, and check every stored sum.
+    Verify {
+        #[command(flatten)]
+        study: StudyArgs,
+        #[command(flatten)]
+        part: PartArgs,
+    },
+    /// What the database holds, what is pending, what failed.
+    Status {
+        #[command(flatten)]
+        study: StudyArgs,
+        /// As one JSON object.
+        #[arg(long)]
+        json: bool,
+    },
+    /// One optimum: temperatures, heat flows, the binary choices, and the rows it came from.
+    Show {
+        #[command(flatten)]
+        study: StudyArgs,
+        #[command(flatten)]
+        point: PointArgs,
+    },
+}
+
+#[derive(Debug, Clone, ClapArgs)]
+pub struct StudyArgs {
+    /// Study file, or the folder of one [default: study.toml].
+    pub study: Option<PathBuf>,
+
+    /// Where the experiment database lies, instead of where the study file says.
+    #[arg(long, value_name = "FILE")]
+    pub db: Option<PathBuf>,
+}
+
+#[derive(Debug, Clone, ClapArgs)]
+pub struct SolveArgs {
+    #[command(flatten)]
+    pub study: StudyArgs,
+
+    /// How optima are found; points that were found otherwise are computed again.
+    #[arg(long, value_enum, default_value_t = Method::Fast)]
+    pub method: Method,
+}
+
+/// How optima are found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Method {
+    /// Global by construction, exact door law and vote.
+    Fast,
+    /// The paper's nonlinear programs with its smooth door law, and the exact vote.
+    Nlp,
+    /// The paper's nonlinear programs with its smooth door law and its network for the vote.
+    NlpSurrogate,
+}
+
+#[derive(Debug, ClapArgs)]
+pub struct PartArgs {
+    /// Share of the stored points that is solved again, 0 … 1.
+    #[arg(long, value_name = "F", default_value_t = 0.02)]
+    pub fraction: f64,
+
+    /// Seed of their choice.
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    pub seed: u64,
+}
+
+#[derive(Debug, ClapArgs)]
+pub struct DemoArgs {
+    /// Folder of the data set.
+    pub dir: PathBuf,
+
+    /// Missions of 3 to 6 hours, spread over the year.
+    #[arg(long, value_name = "N", default_value_t = 48, conflicts_with = "like")]
+    pub missions: usize,
+
+    /// Seed of everything that is made up.
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    pub seed: u64,
+
+    /// Missions with start, end and load of a published metaData.csv.
+    #[arg(long, value_name = "METADATA.csv")]
+    pub like: Option<PathBuf>,
+
+    /// With --like: bus to take; may be given several times [default: 183].
+    #[arg(long = "bus", value_name = "NUMBER", requires = "like")]
+    pub buses: Vec<u32>,
+}
+
+#[derive(Debug, ClapArgs)]
+pub struct PointArgs {
+    /// Sample, as in the view `sample`.
+    #[arg(long, value_name = "ID")]
+    pub sample: i64,
+
+    /// Design, as in the study file.
+    #[arg(long, value_name = "D")]
+    pub design: String,
+
+    /// Limit of the comfort window [-L, +L], or the larger limit of an unequal one.
+    #[arg(long, value_name = "L")]
+    pub pmv_limit: f64,
+}

@@ -1,0 +1,105 @@
+//! Studies in scratch folders, and the program run on them.
+
+#![expect(clippy::unwrap_used, reason = "a test ends where something is not as expected")]
+#![allow(dead_code, reason = "every test file uses its own part of these")]
+
+use assert_cmd::Command;
+use std::path::{Path, PathBuf};
+use store::Store;
+use tempfile::TempDir;
+
+/// A scratch folder with a study in it.
+pub struct Scratch {
+    pub folder: TempDir,
+}
+
+/// What a run of the program left behind.
+pub struct Run {
+    pub status: i32,
+    pub stdout: String,
+    pub stderr: String,
+}
+
+impl Scratch {
+    pub fn empty() -> Self {
+        Self { folder: tempfile::tempdir().unwrap() }
+    }
+
+    /// The demo with a few missions.
+    pub fn demo(missions: usize) -> Self {
+        let scratch = Self::empty();
+        let run = scratch.run(&["demo", ".", "--missions", &missions.to_string()]);
+        assert_eq!(run.status, 0, "{}", run.stderr);
+        scratch
+    }
+
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    /// Runs the program in the folder.
+    pub fn run(&self, arguments: &[&str]) -> Run {
+        let output = Command::new(env!("CARGO_BIN_EXE_busclimate"))
+            .current_dir(self.folder.path())
+            .args(arguments)
+            .output()
+            .unwrap();
+        Run {
+            status: output.status.code().unwrap(),
+            stdout: String::from_utf8(output.stdout).unwrap(),
+            stderr: String::from_utf8(output.stderr).unwrap(),
+        }
+    }
+
+    /// Runs the program and expects an exit status.
+    pub fn expect(&self, status: i32, arguments: &[&str]) -> Run {
+        let run = self.run(arguments);
+        assert_eq!(run.status, status, "{arguments:?}\n{}{}", run.stdout, run.stderr);
+        run
+    }
+
+    pub fn read(&self, name: &str) -> String {
+        std::fs::read_to_string(self.path(name)).unwrap()
+    }
+
+    pub fn write(&self, name: &str, content: impl AsRef<[u8]>) {
+        std::fs::write(self.path(name), content).unwrap();
+    }
+
+    /// Replaces the first occurrence in a file.
+    pub fn edit(&self, name: &str, from: &str, to: &str) {
+        let text = self.read(name);
+        assert!(text.contains(from), "{name} has no {from:?}");
+        self.write(name, text.replacen(from, to, 1));
+    }
+
+    /// Mission files by name.
+    pub fn missions(&self) -> Vec<String> {
+        let entries = std::fs::read_dir(self.path("ztbus")).unwrap();
+        let mut names: Vec<String> = entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+        names.retain(|n| n.starts_with('B'));
+        names.sort();
+        names
+    }
+
+    pub fn query(&self, sql: &str) -> Vec<Vec<String>> {
+        Store::open_read_only(&self.path("study.db")).unwrap().query_text(sql).unwrap()
+    }
+
+    /// All files of the report.
+    pub fn report(&self) -> Vec<(String, Vec<u8>)> {
+        let entries = std::fs::read_dir(self.path("report")).unwrap();
+        let mut files: Vec<(String, Vec<u8>)> = entries
+            .map(|e| e.unwrap())
+            .map(|e| (e.file_name().into_string().unwrap(), std::fs::read(e.path()).unwrap()))
+            .collect();
+        files.sort();
+        files
+    }
+}
+
+/// Where real data lies.
+pub fn data() -> PathBuf {
+    let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data");
+    std::env::var_os("BUSCLIMATE_DATA").map_or_else(beside, PathBuf::from)
+}
