@@ -1,12 +1,13 @@
 //! The five heat balances in steady state (paper, eq. odes with all derivatives zero).
 //!
 //! Given the cabin temperature and whether the radiant heaters are on, the balances fix every other temperature, and the
-//! cabin's own balance then says what heat the air unit has to bring. Every Newton step eliminates the outside of the
-//! shell and the heaters by hand, so that a two-by-two system is left; its matrix is an M-matrix for every positive
+//! cabin's own balance then says what heat the air unit has to bring. Linearised, the outside of the shell and the heaters
+//! are eliminated by hand, so that a two-by-two system is left; its matrix is an M-matrix for every positive
 //! temperature, which makes the solution unique and all temperatures rise with the cabin's.
 
 use crate::{
-    Disturbances, PassengerViews, PmvModel, SolarGains, StandardRange, Vehicle, ZERO_CELSIUS_K, clothing_insulation_clo,
+    Disturbances, HeatFlows, PassengerViews, PmvModel, Slopes, SolarGains, Temperatures, Vehicle,
+    clothing_insulation_clo,
 };
 
 /// The state of the radiant heaters.
@@ -18,135 +19,16 @@ pub enum Heaters {
     On,
 }
 
-/// Temperatures of the five thermal reservoirs in K.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Temperatures {
-    /// Cabin air.
-    pub cabin_k: f64,
-    /// Seats and rails.
-    pub interior_k: f64,
-    /// Inside of the shell.
-    pub shell_inside_k: f64,
-    /// Outside of the shell.
-    pub shell_outside_k: f64,
-    /// Radiant heaters.
-    pub radiant_heater_k: f64,
-}
-
-/// How the settled temperatures change with the cabin temperature, in K/K, each between 0 and 1.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Slopes {
-    /// Of the interior.
-    pub interior: f64,
-    /// Of the inside of the shell.
-    pub shell_inside: f64,
-    /// Of the outside of the shell.
-    pub shell_outside: f64,
-    /// Of the radiant heaters.
-    pub radiant_heater: f64,
-}
-
-/// Every heat flow of the model in W, positive in the direction of the paper's equations.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct HeatFlows {
-    /// Cabin air to the inside of the shell, Q_conv,s,i.
-    pub convection_shell_inside_w: f64,
-    /// Interior to cabin air, Q_conv,int.
-    pub convection_interior_w: f64,
-    /// Outside of the shell to ambient air, Q_conv,s,o.
-    pub convection_shell_outside_w: f64,
-    /// Radiant heaters to cabin air, Q_conv,rh.
-    pub convection_radiant_heater_w: f64,
-    /// Through the shell, outwards, Q_cond.
-    pub conduction_shell_w: f64,
-    /// Outside of the shell to its surroundings, Q_rad,s,o.
-    pub radiation_shell_outside_w: f64,
-    /// Radiant heaters to shell, Q_rad,rh,s.
-    pub radiation_heater_shell_w: f64,
-    /// Radiant heaters to interior, Q_rad,rh,int.
-    pub radiation_heater_interior_w: f64,
-    /// Interior to shell, Q_rad,int,s.
-    pub radiation_interior_shell_w: f64,
-    /// Through open doors, outwards, Q_door (eq. qdoor).
-    pub door_w: f64,
-    /// From passengers, Q_pass (eq. metabolic-heat).
-    pub passengers_w: f64,
-    /// From lights, screens and electric components, Q_other.
-    pub other_w: f64,
-    /// From the air unit, Q_hc; negative when cooling.
-    pub air_unit_w: f64,
-    /// Electric power of the radiant heaters, P_rh.
-    pub radiant_heater_power_w: f64,
-    /// From the sun.
-    pub solar: SolarGains,
-}
-
-impl HeatFlows {
-    /// Net heat into each reservoir in W: heaters, interior, cabin, inside and outside of the shell; zero in steady
-    /// state (eq. odes).
-    #[must_use]
-    pub fn net_w(&self) -> [f64; 5] {
-        [
-            self.radiant_heater_power_w
-                - self.convection_radiant_heater_w
-                - self.radiation_heater_interior_w
-                - self.radiation_heater_shell_w,
-            self.solar.interior_w + self.radiation_heater_interior_w
-                - self.convection_interior_w
-                - self.radiation_interior_shell_w,
-            self.passengers_w
-                + self.other_w
-                + self.air_unit_w
-                + self.convection_radiant_heater_w
-                + self.convection_interior_w
-                - self.convection_shell_inside_w
-                - self.door_w,
-            self.convection_shell_inside_w
-                + self.solar.shell_inside_w
-                + self.radiation_heater_shell_w
-                + self.radiation_interior_shell_w
-                - self.conduction_shell_w,
-            self.conduction_shell_w + self.solar.shell_outside_w
-                - self.convection_shell_outside_w
-                - self.radiation_shell_outside_w,
-        ]
-    }
-
-    /// Every flow with its name, in the order of the fields.
-    #[must_use]
-    pub fn named_w(&self) -> [(&'static str, f64); 17] {
-        [
-            ("cabin air to shell", self.convection_shell_inside_w),
-            ("interior to cabin air", self.convection_interior_w),
-            ("shell to ambient air", self.convection_shell_outside_w),
-            ("radiant heaters to cabin air", self.convection_radiant_heater_w),
-            ("through the shell", self.conduction_shell_w),
-            ("shell to surroundings (radiation)", self.radiation_shell_outside_w),
-            ("radiant heaters to shell", self.radiation_heater_shell_w),
-            ("radiant heaters to interior", self.radiation_heater_interior_w),
-            ("interior to shell (radiation)", self.radiation_interior_shell_w),
-            ("through open doors", self.door_w),
-            ("passengers", self.passengers_w),
-            ("electric components", self.other_w),
-            ("air unit", self.air_unit_w),
-            ("radiant heater power", self.radiant_heater_power_w),
-            ("sun on interior", self.solar.interior_w),
-            ("sun on shell inside", self.solar.shell_inside_w),
-            ("sun on shell outside", self.solar.shell_outside_w),
-        ]
-    }
-}
-
 /// The cabin under given disturbances, with all coefficients ready.
 #[derive(Debug, Clone, Copy)]
 pub struct Cabin<'a> {
-    ambient_k: f64,
-    solar: SolarGains,
+    pub(crate) ambient_k: f64,
+    pub(crate) solar: SolarGains,
     gains_w: [f64; 2],
     /// Convection in W/K: shell inside, interior, heaters, shell outside.
-    g_shell: f64,
-    g_interior: f64,
-    g_heater: f64,
+    pub(crate) g_shell: f64,
+    pub(crate) g_interior: f64,
+    pub(crate) g_heater: f64,
     g_outside: f64,
     /// Conduction through the shell in W/K.
     g_conduction: f64,
@@ -159,12 +41,10 @@ pub struct Cabin<'a> {
     door: f64,
     curtain_keeps: f64,
     curtain_power_w: f64,
-    heater_target_k: f64,
-    view_interior: f64,
-    views: &'a PassengerViews,
-    pmv: PmvModel,
-    /// Surface excess in K from which convection is natural.
-    kink_k: f64,
+    pub(crate) heater_target_k: f64,
+    pub(crate) view_interior: f64,
+    pub(crate) views: &'a PassengerViews,
+    pub(crate) pmv: PmvModel,
 }
 
 impl<'a> Cabin<'a> {
@@ -212,7 +92,6 @@ impl<'a> Cabin<'a> {
             view_interior: v.view_factor_passenger_interior,
             views,
             pmv,
-            kink_k: pmv.natural_convection_from_k(),
         }
     }
 
@@ -226,47 +105,6 @@ impl<'a> Cabin<'a> {
     #[must_use]
     pub fn air_curtain_power_w(&self) -> f64 {
         self.curtain_power_w
-    }
-
-    /// A start for [`Cabin::settle`] that needs no knowledge: everything as warm as the cabin.
-    #[must_use]
-    pub fn rough_guess(&self, cabin_k: f64, heaters: Heaters) -> Temperatures {
-        let radiant_heater_k = if heaters == Heaters::On { self.heater_target_k } else { cabin_k };
-        Temperatures {
-            cabin_k,
-            interior_k: cabin_k,
-            shell_inside_k: cabin_k,
-            shell_outside_k: self.ambient_k,
-            radiant_heater_k,
-        }
-    }
-
-    /// All temperatures in steady state at a cabin temperature, with their slopes over it. `guess` gives the start; its
-    /// cabin temperature does not count, and its heater temperature only while the heaters are off.
-    ///
-    /// `None` where Newton's method does not settle within 30 steps, which no physical input has been seen to cause.
-    #[must_use]
-    pub fn settle(&self, cabin_k: f64, heaters: Heaters, guess: &Temperatures) -> Option<(Temperatures, Slopes)> {
-        let mut t = Temperatures { cabin_k, ..*guess };
-        if heaters == Heaters::On {
-            t.radiant_heater_k = self.heater_target_k;
-        }
-        for _ in 0..30 {
-            let system = System::new(self, &t, heaters);
-            let [heater, interior, inside, outside] = system.solve(self.surface_net_w(&t));
-            t.radiant_heater_k += heater;
-            t.interior_k += interior;
-            t.shell_inside_k += inside;
-            t.shell_outside_k += outside;
-            let largest = heater.abs().max(interior.abs()).max(inside.abs()).max(outside.abs());
-            // Convergence is quadratic: what a step below 1 µK leaves behind is below rounding.
-            if largest < 1e-6 {
-                let [radiant_heater, interior, shell_inside, shell_outside] =
-                    system.solve([self.g_heater, self.g_interior, self.g_shell, 0.0]);
-                return Some((t, Slopes { interior, shell_inside, shell_outside, radiant_heater }));
-            }
-        }
-        None
     }
 
     /// Heat that the air unit has to bring in steady state in W (negative: take away), and its slope in W/K over the
@@ -294,72 +132,6 @@ impl<'a> Cabin<'a> {
         self.g_heater * (t.radiant_heater_k - t.cabin_k)
             + self.r_heater_interior * (heater4 - pow4(t.interior_k))
             + self.r_heater_shell * (heater4 - pow4(t.shell_inside_k))
-    }
-
-    /// Mean over the passengers of their predicted mean vote, and its slope in 1/K over the cabin temperature.
-    ///
-    /// By quadrature, unless some passengers stand on one side of the kink between forced and natural convection and
-    /// some on the other: then over all of them. The two agree to 1e-8 where one turns into the other.
-    #[must_use]
-    pub fn mean_pmv(&self, t: &Temperatures, slopes: &Slopes) -> (f64, f64) {
-        let [(view_a, weight_a), (view_b, weight_b)] = self.views.nodes;
-        let (a, b) = (self.vote(t, slopes, view_a), self.vote(t, slopes, view_b));
-        if self.kink_between_passengers([(view_a, a.2), (view_b, b.2)]) {
-            let all = self.views.all();
-            let (pmv, slope) = all.iter().fold((0.0, 0.0), |(pmv, slope), &view| {
-                let one = self.vote(t, slopes, view);
-                (pmv + one.0, slope + one.1)
-            });
-            return (pmv / all.len() as f64, slope / all.len() as f64);
-        }
-        (weight_a * a.0 + weight_b * b.0, weight_a * a.1 + weight_b * b.1)
-    }
-
-    /// Vote of a passenger, its slope in 1/K over the cabin temperature, and the excess of its clothing surface in K.
-    fn vote(&self, t: &Temperatures, slopes: &Slopes, view: f64) -> (f64, f64, f64) {
-        let radiant_k = self.mean_radiant_k(t, view);
-        let point = self.pmv.at(t.cabin_k - ZERO_CELSIUS_K, radiant_k - ZERO_CELSIUS_K);
-        let view_shell = 1.0 - self.view_interior - view;
-        let cube = |k: f64| k * k * k;
-        let radiant_slope = (view * cube(t.radiant_heater_k) * slopes.radiant_heater
-            + view_shell * cube(t.shell_inside_k) * slopes.shell_inside
-            + self.view_interior * cube(t.interior_k) * slopes.interior)
-            / cube(radiant_k);
-        (point.pmv, point.per_air_k + point.per_radiant_k * radiant_slope, point.surface_excess_k)
-    }
-
-    /// Whether natural convection starts between the least and the largest view factor, judged from the surface excess
-    /// at two view factors along a straight line, with a tenth of the range to spare.
-    fn kink_between_passengers(&self, [(view_a, excess_a), (view_b, excess_b)]: [(f64, f64); 2]) -> bool {
-        let [least, largest] = self.views.range;
-        let spare = 0.1 * (largest - least);
-        if view_b <= view_a {
-            return false;
-        }
-        let per_view = (excess_b - excess_a) / (view_b - view_a);
-        let at = |view: f64| excess_a + per_view * (view - view_a);
-        let (p, q) = (at(least - spare), at(largest + spare));
-        let inside = |kink_k: f64| p.min(q) < kink_k && kink_k < p.max(q);
-        inside(self.kink_k) || inside(-self.kink_k)
-    }
-
-    /// The vote of one passenger with the given view factor to the radiant heaters.
-    #[must_use]
-    pub fn passenger_pmv(&self, t: &Temperatures, view: f64) -> f64 {
-        self.pmv.at(t.cabin_k - ZERO_CELSIUS_K, self.mean_radiant_k(t, view) - ZERO_CELSIUS_K).pmv
-    }
-
-    /// Mean radiant temperature of the average passenger in K (paper, section 2.2).
-    #[must_use]
-    pub fn mean_radiant_temperature_k(&self, t: &Temperatures) -> f64 {
-        self.mean_radiant_k(t, self.views.mean())
-    }
-
-    /// Whether the average passenger's state lies in the range of use of ISO 7730.
-    #[must_use]
-    pub fn standard_range(&self, t: &Temperatures, pmv: f64) -> StandardRange {
-        let radiant_k = self.mean_radiant_temperature_k(t);
-        self.pmv.standard_range(t.cabin_k - ZERO_CELSIUS_K, radiant_k - ZERO_CELSIUS_K, pmv)
     }
 
     /// Every heat flow at the given temperatures, with the given air unit heat and heater power in W.
@@ -393,12 +165,13 @@ impl<'a> Cabin<'a> {
         (conductance * difference, 1.5 * conductance)
     }
 
-    /// T_mr⁴ = F_rh T_rh⁴ + (1 − F_int − F_rh) T_s,i⁴ + F_int T_int⁴ (paper, section 2.2).
-    fn mean_radiant_k(&self, t: &Temperatures, view: f64) -> f64 {
-        let fourth = view * pow4(t.radiant_heater_k)
-            + (1.0 - self.view_interior - view) * pow4(t.shell_inside_k)
-            + self.view_interior * pow4(t.interior_k);
-        fourth.sqrt().sqrt()
+    /// The surface balances, linearised at the given temperatures.
+    pub(crate) fn linearise(&self, t: &Temperatures, heaters: Heaters) -> Linear {
+        let system = System::new(self, t, heaters);
+        Linear {
+            shift_k: system.solve(self.surface_net_w(t)),
+            slopes: system.solve([self.g_heater, self.g_interior, self.g_shell, 0.0]),
+        }
     }
 
     /// Net heat into heaters (without their power), interior, inside and outside of the shell in W.
@@ -420,7 +193,23 @@ impl<'a> Cabin<'a> {
     }
 }
 
-fn pow4(k: f64) -> f64 {
+/// What the four surfaces do where the balances hold: `shift_k` at the cabin temperature as it is, and `slopes` more for
+/// each kelvin of the cabin; heaters, interior, inside and outside of the shell.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Linear {
+    pub shift_k: [f64; 4],
+    pub slopes: [f64; 4],
+}
+
+impl Linear {
+    pub fn named_slopes(&self) -> Slopes {
+        let [radiant_heater, interior, shell_inside, shell_outside] = self.slopes;
+        Slopes { interior, shell_inside, shell_outside, radiant_heater }
+    }
+}
+
+/// Fourth power of a temperature.
+pub(crate) fn pow4(k: f64) -> f64 {
     let square = k * k;
     square * square
 }

@@ -113,6 +113,7 @@ impl Cop {
 
     /// COP at a lift in K. Positive, and never rising with the lift.
     #[must_use]
+    #[inline]
     pub fn at(&self, lift_k: f64) -> f64 {
         match self {
             Self::Constant(cop) => *cop,

@@ -9,24 +9,29 @@
 
 mod balance;
 mod clothing;
+mod comfort;
 mod cop;
 mod design;
 mod disturbances;
+mod flows;
 mod passengers;
 mod pmv;
 mod solar;
+mod state;
 mod vehicle;
 pub mod view_factor;
 mod window;
 
-pub use balance::{Cabin, HeatFlows, Heaters, Slopes, Temperatures};
+pub use balance::{Cabin, Heaters};
 pub use clothing::clothing_insulation_clo;
 pub use cop::{Cop, CopError, named_cooling_cops, named_heating_cops};
 pub use design::{Design, Heating};
 pub use disturbances::{Disturbances, DisturbancesError};
+pub use flows::{HeatFlows, Slopes, Temperatures};
 pub use passengers::{Panel, PassengerViews, ceiling_panels, panel_view_factor, place_passengers};
 pub use pmv::{PmvModel, PmvPoint, StandardRange, predicted_percentage_dissatisfied, water_vapour_pressure_pa};
 pub use solar::{SolarGains, roof_irradiance_w_m2, wall_irradiance_w_m2};
+pub use state::{Aim, State};
 pub use vehicle::{Vehicle, VehicleError};
 pub use window::{ComfortWindow, WindowError};
 

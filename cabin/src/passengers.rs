@@ -18,13 +18,16 @@ pub struct Panel {
 /// The view factors to all radiant heaters of passengers who are spread over the cabin.
 ///
 /// For a smooth function f of the view factor, the mean over the passengers is `Σ weight · f(node)` with the two nodes of
-/// Gauss' quadrature for the distribution of the view factors: exact where f is a cubic, and for the vote good to 1e-8.
-/// Where the vote has its kink between the passengers, the mean goes over all of them ([`crate::Cabin::mean_pmv`]).
+/// Gauss' quadrature for the distribution of the view factors: exact where f is a cubic, and for the vote good to 1e-9.
+/// Where the vote has its kink between the passengers, those on each side of it have a quadrature of their own.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PassengerViews {
     all: Vec<f64>,
-    pub(crate) nodes: [(f64, f64); 2],
-    pub(crate) range: [f64; 2],
+    /// In rising order.
+    sorted: Vec<f64>,
+    /// Of the first passengers in that order: sums of the first, second and third power of view − mean.
+    sums: Vec<[f64; 3]>,
+    nodes: [(f64, f64); 2],
     mean: f64,
 }
 
@@ -105,22 +108,35 @@ impl PassengerViews {
     /// Equally weighted passengers with the given view factors, at least one.
     #[must_use]
     pub fn from_view_factors(views: &[f64]) -> Self {
-        let mean_of = |f: &dyn Fn(f64) -> f64| views.iter().map(|&v| f(v)).sum::<f64>() / views.len() as f64;
-        let mean = mean_of(&|v| v);
-        let variance = mean_of(&|v| (v - mean).powi(2));
-        // The nodes keep mean, variance and third central moment.
-        let half_skew = if variance > 0.0 { mean_of(&|v| (v - mean).powi(3)) / (2.0 * variance) } else { 0.0 };
-        let spread = half_skew.hypot(variance.sqrt());
-        let (low, high) = (half_skew - spread, half_skew + spread);
-        let high_weight = if spread > 0.0 { -low / (high - low) } else { 0.5 };
-        let least = views.iter().copied().fold(f64::INFINITY, f64::min);
-        let largest = views.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        Self {
-            all: views.to_vec(),
-            nodes: [(mean + low, 1.0 - high_weight), (mean + high, high_weight)],
-            range: [least, largest],
-            mean,
+        let mean = views.iter().sum::<f64>() / views.len() as f64;
+        let mut sorted = views.to_vec();
+        sorted.sort_by(f64::total_cmp);
+        let mut sums = vec![[0.0; 3]];
+        let mut sum = [0.0; 3];
+        for view in &sorted {
+            let d = view - mean;
+            sum = [sum[0] + d, sum[1] + d * d, sum[2] + d * d * d];
+            sums.push(sum);
         }
+        let nodes = gauss(views.len() as f64, sum).map(|(offset, weight)| (mean + offset, weight));
+        Self { all: views.to_vec(), sorted, sums, nodes, mean }
+    }
+
+    /// The nodes `(view factor, weight)` of two quadratures: of the passengers who see less than `view` of the heaters,
+    /// and of the others. All four weights sum to 1.
+    pub(crate) fn split_nodes(&self, view: f64) -> [(f64, f64); 4] {
+        let count = self.sorted.partition_point(|&v| v < view);
+        let (below, all) = (self.sums[count], self.sums[self.sorted.len()]);
+        let above = std::array::from_fn(|i| all[i] - below[i]);
+        let total = self.sorted.len() as f64;
+        let group = |n: f64, sums| gauss(n, sums).map(|(offset, weight)| (self.mean + offset, weight * n / total));
+        let ([a, b], [c, d]) = (group(count as f64, below), group(total - count as f64, above));
+        [a, b, c, d]
+    }
+
+    /// Least and largest view factor.
+    pub(crate) fn range(&self) -> [f64; 2] {
+        [self.sorted[0], self.sorted[self.sorted.len() - 1]]
     }
 
     /// The view factor of every passenger, in the order of their placement.
@@ -140,4 +156,23 @@ impl PassengerViews {
     pub fn mean(&self) -> f64 {
         self.mean
     }
+}
+
+/// Two nodes `(offset, weight)` that keep mean, variance and third central moment of `n` equally weighted numbers, from
+/// the sums of their first three powers; the weights sum to 1.
+fn gauss(n: f64, [first, second, third]: [f64; 3]) -> [(f64, f64); 2] {
+    if n == 0.0 {
+        return [(0.0, 0.5); 2];
+    }
+    let mean = first / n;
+    let variance = (second / n - mean * mean).max(0.0);
+    // View factors closer than this are one.
+    if variance < 1e-18 {
+        return [(mean, 0.5); 2];
+    }
+    let skew = third / n - 3.0 * mean * second / n + 2.0 * mean * mean * mean;
+    let half = skew / (2.0 * variance);
+    let spread = half.hypot(variance.sqrt());
+    let high_weight = (spread - half) / (2.0 * spread);
+    [(mean + half - spread, 1.0 - high_weight), (mean + half + spread, high_weight)]
 }

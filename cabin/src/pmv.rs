@@ -34,6 +34,23 @@ pub struct PmvPoint {
     pub surface_excess_k: f64,
 }
 
+/// A quantity to first order in air and mean radiant temperature.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Line {
+    pub value: f64,
+    pub per_air_k: f64,
+    pub per_radiant_k: f64,
+}
+
+/// The heat balance of the clothing, linearised and solved for its surface temperature.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Clothing {
+    /// By how many K the surface has to change.
+    pub surface: Line,
+    /// Radiation and convection from the surface in W/m² after that change.
+    pub dry_w_m2: Line,
+}
+
 /// Whether a state lies where ISO 7730 (clause 4.1) says that the index should be used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StandardRange {
@@ -135,6 +152,60 @@ impl PmvModel {
             per_radiant_k: -self.sensitivity * loss_per_radiant,
             surface_excess_k: t - air,
         }
+    }
+
+    /// The clothing's heat balance at a surface, air and mean radiant temperature in the annex's kelvin, to first order.
+    ///
+    /// With the dry loss L(t) = f_cl (3.96e-8 (t⁴ − t_r⁴) + h_c(t) (t − t_a)) the balance is t + I_cl L = 35.7 °C − 0.028 M.
+    #[inline]
+    pub(crate) fn clothing(&self, surface_k: f64, air_k: f64, radiant_k: f64) -> Clothing {
+        let t = surface_k;
+        let (t3, radiant3) = (t * t * t, radiant_k * radiant_k * radiant_k);
+        let (convection, convection_slope) = self.convection(t - air_k);
+        let radiation = 3.96e-8 * self.area_factor;
+        let loss = radiation * (t3 * t - radiant3 * radiant_k) + self.area_factor * convection;
+        let per_surface = 4.0 * radiation * t3 + self.area_factor * convection_slope;
+        let per_air = -self.area_factor * convection_slope;
+        let per_radiant = -4.0 * radiation * radiant3;
+
+        let inverse = 1.0 / (1.0 + self.insulation * per_surface);
+        let shift = -(t + self.insulation * loss - (308.7 - 0.028 * self.metabolic_w_m2)) * inverse;
+        Clothing {
+            surface: Line {
+                value: shift,
+                per_air_k: -self.insulation * per_air * inverse,
+                per_radiant_k: -self.insulation * per_radiant * inverse,
+            },
+            dry_w_m2: Line {
+                value: loss + per_surface * shift,
+                per_air_k: per_air * inverse,
+                per_radiant_k: per_radiant * inverse,
+            },
+        }
+    }
+
+    /// The mean radiant temperature at which the clothing's surface has a temperature, all in the annex's kelvin. `None`
+    /// where no radiation does that, and for naked people, whose surface does not depend on it.
+    pub(crate) fn radiant_of_surface_k(&self, surface_k: f64, air_k: f64) -> Option<f64> {
+        let t = surface_k;
+        let loss_w_m2 = (308.7 - 0.028 * self.metabolic_w_m2 - t) / self.insulation;
+        let radiation = loss_w_m2 / self.area_factor - self.convection(t - air_k).0;
+        let fourth = t * t * t * t - radiation / 3.96e-8;
+        (fourth > 0.0 && fourth.is_finite()).then(|| fourth.sqrt().sqrt())
+    }
+
+    /// The vote of a dry loss in W/m², and its slope in 1/K, in air of `air_c`; `dry_slope` is the loss's own slope over
+    /// the air temperature.
+    #[inline]
+    pub(crate) fn vote(&self, dry_w_m2: f64, dry_slope: f64, air_c: f64) -> (f64, f64) {
+        let m = self.metabolic_w_m2;
+        let inverse = 1.0 / (air_c + 235.0);
+        let vapour_pa = self.relative_humidity * 1000.0 * (16.6536 - 4030.183 * inverse).exp();
+        let vapour_slope = vapour_pa * 4030.183 * inverse * inverse;
+        let per_pa = 0.00305 + 1.7e-5 * m;
+        let moist_w_m2 = self.fixed_loss_w_m2 - per_pa * vapour_pa - 0.0014 * m * air_c;
+        let moist_slope = -per_pa * vapour_slope - 0.0014 * m;
+        (self.sensitivity * (m - moist_w_m2 - dry_w_m2), -self.sensitivity * (moist_slope + dry_slope))
     }
 
     /// From which difference between clothing surface and air in K, up or down, natural convection exceeds the forced

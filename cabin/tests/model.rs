@@ -1,8 +1,8 @@
 //! Properties of the balances, the door law and the COP curves.
 
 use cabin::{
-    Cabin, Cop, CopError, Disturbances, Heaters, PassengerViews, Temperatures, Vehicle, kelvin, named_cooling_cops,
-    named_heating_cops, place_passengers,
+    Aim, Cabin, Cop, CopError, Disturbances, Heaters, PassengerViews, State, Temperatures, Vehicle, kelvin,
+    named_cooling_cops, named_heating_cops, place_passengers,
 };
 use proptest::prelude::*;
 
@@ -27,7 +27,7 @@ fn xval_python_door_loss() {
     let views = PassengerViews::new(&vehicle);
     for (ambient_c, cabin_c, printed_kw) in cases {
         let cabin = Cabin::new(&vehicle, &views, &night(ambient_c, 1.0));
-        let t = Temperatures { cabin_k: kelvin(cabin_c), ..cabin.rough_guess(kelvin(cabin_c), Heaters::Off) };
+        let t = Temperatures { cabin_k: kelvin(cabin_c), ..cabin.rough_state(kelvin(cabin_c)).temperatures };
         let [open, curtain] = [false, true].map(|curtain| cabin.flows(&t, curtain, 0.0, 0.0).door_w / 1000.0);
         let half_unit = if printed_kw.abs() < 20.0 { 0.005 } else { 0.05 };
         assert!((open - printed_kw).abs() <= half_unit, "{ambient_c} -> {cabin_c}: {open} instead of {printed_kw}");
@@ -41,7 +41,8 @@ fn prop_a_dark_empty_closed_bus_is_as_cold_as_the_night() {
     let views = PassengerViews::new(&vehicle);
     let cabin = Cabin::new(&vehicle, &views, &night(-5.0, 0.2));
     let ambient = kelvin(-5.0);
-    let (t, slopes) = cabin.settle(ambient, Heaters::Off, &cabin.rough_guess(300.0, Heaters::Off)).expect("settles");
+    let State { temperatures: t, slopes, .. } =
+        cabin.state(Aim::CabinTemperature(ambient), Heaters::Off, &cabin.rough_state(300.0)).expect("settles");
     for k in [t.interior_k, t.shell_inside_k, t.shell_outside_k, t.radiant_heater_k] {
         assert!((k - ambient).abs() < 1e-9, "{t:?}");
     }
@@ -101,9 +102,9 @@ proptest! {
         let heaters = if on { Heaters::On } else { Heaters::Off };
         let settle = |cabin_c: f64| {
             let k = kelvin(cabin_c);
-            cabin.settle(k, heaters, &cabin.rough_guess(k, heaters)).expect("settles")
+            cabin.state(Aim::CabinTemperature(k), heaters, &cabin.rough_state(k)).expect("settles")
         };
-        let (t, slopes) = settle(cabin_c);
+        let State { temperatures: t, slopes, pmv, pmv_slope, .. } = settle(cabin_c);
         let (heat_w, heat_slope) = cabin.air_unit_heat_w(&t, &slopes, curtain);
         let power_w = if on { cabin.radiant_heater_power_w(&t) } else { 0.0 };
         for net_w in cabin.flows(&t, curtain, heat_w, power_w).net_w() {
@@ -111,33 +112,39 @@ proptest! {
         }
         let all = [slopes.interior, slopes.shell_inside, slopes.shell_outside, slopes.radiant_heater];
         prop_assert!(all.iter().all(|s| (0.0..=1.0).contains(s)), "{slopes:?}");
-        let (pmv, pmv_slope) = cabin.mean_pmv(&t, &slopes);
         prop_assert!(heat_slope > 0.0 && pmv_slope > 0.0 && pmv.is_finite());
 
         let h = 1e-3;
-        let (up, up_slopes) = settle(cabin_c + h);
-        let (down, down_slopes) = settle(cabin_c - h);
-        let difference = |f: &dyn Fn(&Temperatures) -> f64| (f(&up) - f(&down)) / (2.0 * h);
+        let (up, down) = (settle(cabin_c + h), settle(cabin_c - h));
+        let difference = |f: &dyn Fn(&Temperatures) -> f64| (f(&up.temperatures) - f(&down.temperatures)) / (2.0 * h);
         prop_assert!((difference(&|t| t.interior_k) - slopes.interior).abs() < 1e-6);
         prop_assert!((difference(&|t| t.shell_inside_k) - slopes.shell_inside).abs() < 1e-6);
         prop_assert!((difference(&|t| t.shell_outside_k) - slopes.shell_outside).abs() < 1e-6);
         prop_assert!((difference(&|t| t.radiant_heater_k) - slopes.radiant_heater).abs() < 1e-6);
-        let rise = cabin.mean_pmv(&up, &up_slopes).0 - cabin.mean_pmv(&down, &down_slopes).0;
-        prop_assert!((rise / (2.0 * h) - pmv_slope).abs() < 0.3 * pmv_slope);
+        prop_assert!(((up.pmv - down.pmv) / (2.0 * h) - pmv_slope).abs() < 0.3 * pmv_slope);
     }
 
     #[test]
-    fn prop_two_nodes_give_the_mean_vote_of_all_passengers(d in disturbances(), cabin_c in 5.0..35.0_f64, on: bool) {
+    fn prop_the_quadrature_gives_the_mean_vote_of_all_passengers(d in disturbances(), cabin_c in 5.0..35.0_f64, on: bool) {
         let vehicle = Vehicle::default();
         let placed = place_passengers(&vehicle);
         let views = PassengerViews::from_view_factors(&placed);
         let cabin = Cabin::new(&vehicle, &views, &d);
         let heaters = if on { Heaters::On } else { Heaters::Off };
-        let (t, slopes) = cabin
-            .settle(kelvin(cabin_c), heaters, &cabin.rough_guess(kelvin(cabin_c), heaters))
-            .expect("settles");
-        let full = placed.iter().map(|&view| cabin.passenger_pmv(&t, view)).sum::<f64>() / placed.len() as f64;
-        let quadrature = cabin.mean_pmv(&t, &slopes).0;
-        prop_assert!((full - quadrature).abs() < 1e-8, "{full} {quadrature}");
+        let cabin_k = kelvin(cabin_c);
+        let state = cabin.state(Aim::CabinTemperature(cabin_k), heaters, &cabin.rough_state(cabin_k)).expect("settles");
+        let mean = |t: &Temperatures| placed.iter().map(|&v| cabin.passenger_pmv(t, v)).sum::<f64>() / placed.len() as f64;
+        let full = mean(&state.temperatures);
+        prop_assert!((full - state.pmv).abs() < 1e-8, "{full} {}", state.pmv);
+
+        // The states of a vote and without heat are the same states, met from the other side.
+        let near = cabin.rough_state(cabin_k + 8.0);
+        let vote = cabin.state(Aim::Vote(full), heaters, &near).expect("settles");
+        prop_assert!((vote.temperatures.cabin_k - cabin_k).abs() < 1e-6, "{vote:?} {cabin_k}");
+        prop_assert!((mean(&vote.temperatures) - full).abs() < 1e-8);
+        let passive = cabin.state(Aim::Passive { curtain: on }, heaters, &near).expect("settles");
+        let (heat_w, _) = cabin.air_unit_heat_w(&passive.temperatures, &passive.slopes, on);
+        prop_assert!(heat_w.abs() < 1e-6, "{heat_w}");
+        prop_assert!((mean(&passive.temperatures) - passive.pmv).abs() < 1e-8);
     }
 }

@@ -4,7 +4,7 @@
 //! label's last place plus what half a unit of every input label makes of it.
 
 use cabin::{
-    Cabin, Disturbances, Heaters, PassengerViews, SolarGains, Vehicle, celsius, clothing_insulation_clo, kelvin,
+    Aim, Cabin, Disturbances, Heaters, PassengerViews, SolarGains, Vehicle, celsius, clothing_insulation_clo, kelvin,
 };
 
 /// Ambient and cabin temperature in °C, passengers, door flow in kW, solar gains of interior, inside and outside in kW.
@@ -32,15 +32,16 @@ fn labels(inputs: Inputs) -> Vec<(&'static str, f64)> {
         door_open_fraction,
     };
     let settle = |cabin: &Cabin| {
-        let guess = cabin.rough_guess(kelvin(cabin_c), Heaters::Off);
-        cabin.settle(kelvin(cabin_c), Heaters::Off, &guess).expect("settles")
+        let cabin_k = kelvin(cabin_c);
+        cabin.state(Aim::CabinTemperature(cabin_k), Heaters::Off, &cabin.rough_state(cabin_k)).expect("settles")
     };
     // The figures give the door flow; the open fraction follows, since the flow is proportional to it.
     let cabin = Cabin::with_solar_gains(&vehicle, &views, &disturbances(1.0), gains);
-    let full_w = cabin.flows(&settle(&cabin).0, true, 0.0, 0.0).door_w.abs();
+    let full_w = cabin.flows(&settle(&cabin).temperatures, true, 0.0, 0.0).door_w.abs();
     let cabin = Cabin::with_solar_gains(&vehicle, &views, &disturbances(1000.0 * door_kw / full_w), gains);
-    let (t, slopes) = settle(&cabin);
-    let (air_unit_w, _) = cabin.air_unit_heat_w(&t, &slopes, true);
+    let state = settle(&cabin);
+    let t = state.temperatures;
+    let (air_unit_w, _) = cabin.air_unit_heat_w(&t, &state.slopes, true);
     let f = cabin.flows(&t, true, air_unit_w, 0.0);
     assert!(f.net_w().iter().all(|w| w.abs() < 1e-6), "{:?}", f.net_w());
     let kw = |watt: f64| watt.abs() / 1000.0;
@@ -61,7 +62,7 @@ fn labels(inputs: Inputs) -> Vec<(&'static str, f64)> {
         ("conduction", kw(f.conduction_shell_w)),
         ("convection shell outside", kw(f.convection_shell_outside_w)),
         ("radiation shell outside", kw(f.radiation_shell_outside_w)),
-        ("PMV", cabin.mean_pmv(&t, &slopes).0),
+        ("PMV", state.pmv),
     ]
 }
 

@@ -7,9 +7,17 @@ use cabin::{ComfortWindow, Design};
 pub struct Grid {
     designs: Vec<Design>,
     windows: Vec<ComfortWindow>,
-    limits: Vec<f64>,
+    limits: Vec<Limit>,
     /// Indices of each window's lower and upper limit in `limits`.
     window_limits: Vec<(usize, usize)>,
+}
+
+/// A limit of the vote, and on which side of windows it stands.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Limit {
+    pub pmv: f64,
+    pub lower: bool,
+    pub upper: bool,
 }
 
 /// A grid that names something twice or nothing at all.
@@ -51,10 +59,16 @@ impl Grid {
                 return Err(GridError::WindowTwice(window.pmv_min(), window.pmv_max()));
             }
         }
-        let mut limits: Vec<f64> = windows.iter().flat_map(|w| [w.pmv_min(), w.pmv_max()]).collect();
-        limits.sort_by(f64::total_cmp);
-        limits.dedup();
-        let index = |pmv: f64| limits.partition_point(|&l| l < pmv);
+        let mut votes: Vec<f64> = windows.iter().flat_map(|w| [w.pmv_min(), w.pmv_max()]).collect();
+        votes.sort_by(f64::total_cmp);
+        votes.dedup();
+        let index = |pmv: f64| votes.partition_point(|&v| v < pmv);
+        let limit = |&pmv: &f64| Limit {
+            pmv,
+            lower: windows.iter().any(|w| w.pmv_min() == pmv),
+            upper: windows.iter().any(|w| w.pmv_max() == pmv),
+        };
+        let limits = votes.iter().map(limit).collect();
         let window_limits = windows.iter().map(|w| (index(w.pmv_min()), index(w.pmv_max()))).collect();
         Ok(Self { designs, windows, limits, window_limits })
     }
@@ -77,7 +91,7 @@ impl Grid {
         self.designs.len() * self.windows.len()
     }
 
-    pub(crate) fn limits(&self) -> &[f64] {
+    pub(crate) fn limits(&self) -> &[Limit] {
         &self.limits
     }
 

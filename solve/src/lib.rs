@@ -2,7 +2,7 @@
 //!
 //! The optimum is global by construction; [`certify`] says why, and refuses what it cannot prove.
 //!
-//! Given the cabin temperature and the heater state, the balances fix everything else ([`cabin::Cabin::settle`]). Three
+//! Given the cabin temperature and the heater state, the balances fix everything else ([`cabin::Cabin::state`]). Three
 //! facts then leave nothing to search:
 //!
 //! 1. The mean vote rises with the cabin temperature, so a comfort window is an interval `[T_lo, T_hi]`.
@@ -18,13 +18,15 @@ mod certificate;
 mod grid;
 pub mod nlp;
 mod optimum;
-mod root;
+mod sample;
+mod states;
 mod study;
 
 pub use certificate::{CertificateError, certify};
 pub use grid::{Grid, GridError};
-pub use optimum::{Candidate, Infeasible, OperatingMode, Operation, Optimum, Outcome, SampleSolver};
+pub use optimum::{Candidate, Infeasible, OperatingMode, Operation, Optimum, Outcome};
+pub use sample::SampleSolver;
 pub use study::solve_blocks;
 
 /// Version of the method: it changes whenever a stored optimum would, beyond rounding, come out differently.
-pub const METHOD_VERSION: u32 = 1;
+pub const METHOD_VERSION: u32 = 2;

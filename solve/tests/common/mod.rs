@@ -1,4 +1,7 @@
-//! Designs, windows and disturbances that the tests share.
+//! Designs, windows, disturbances and the reference solver that the tests share.
+
+#[allow(dead_code, reason = "not every test program needs it")]
+pub mod reference;
 
 use cabin::{
     ComfortWindow, Cop, Design, Disturbances, Heating, PassengerViews, Vehicle, kelvin, named_cooling_cops,

@@ -1,0 +1,122 @@
+//! Temperatures and heat flows of the five thermal reservoirs.
+
+use crate::SolarGains;
+
+/// Temperatures of the five thermal reservoirs in K.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Temperatures {
+    /// Cabin air.
+    pub cabin_k: f64,
+    /// Seats and rails.
+    pub interior_k: f64,
+    /// Inside of the shell.
+    pub shell_inside_k: f64,
+    /// Outside of the shell.
+    pub shell_outside_k: f64,
+    /// Radiant heaters.
+    pub radiant_heater_k: f64,
+}
+
+/// How the settled temperatures change with the cabin temperature, in K/K, each between 0 and 1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Slopes {
+    /// Of the interior.
+    pub interior: f64,
+    /// Of the inside of the shell.
+    pub shell_inside: f64,
+    /// Of the outside of the shell.
+    pub shell_outside: f64,
+    /// Of the radiant heaters.
+    pub radiant_heater: f64,
+}
+
+/// Every heat flow of the model in W, positive in the direction of the paper's equations.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HeatFlows {
+    /// Cabin air to the inside of the shell, Q_conv,s,i.
+    pub convection_shell_inside_w: f64,
+    /// Interior to cabin air, Q_conv,int.
+    pub convection_interior_w: f64,
+    /// Outside of the shell to ambient air, Q_conv,s,o.
+    pub convection_shell_outside_w: f64,
+    /// Radiant heaters to cabin air, Q_conv,rh.
+    pub convection_radiant_heater_w: f64,
+    /// Through the shell, outwards, Q_cond.
+    pub conduction_shell_w: f64,
+    /// Outside of the shell to its surroundings, Q_rad,s,o.
+    pub radiation_shell_outside_w: f64,
+    /// Radiant heaters to shell, Q_rad,rh,s.
+    pub radiation_heater_shell_w: f64,
+    /// Radiant heaters to interior, Q_rad,rh,int.
+    pub radiation_heater_interior_w: f64,
+    /// Interior to shell, Q_rad,int,s.
+    pub radiation_interior_shell_w: f64,
+    /// Through open doors, outwards, Q_door (eq. qdoor).
+    pub door_w: f64,
+    /// From passengers, Q_pass (eq. metabolic-heat).
+    pub passengers_w: f64,
+    /// From lights, screens and electric components, Q_other.
+    pub other_w: f64,
+    /// From the air unit, Q_hc; negative when cooling.
+    pub air_unit_w: f64,
+    /// Electric power of the radiant heaters, P_rh.
+    pub radiant_heater_power_w: f64,
+    /// From the sun.
+    pub solar: SolarGains,
+}
+
+impl HeatFlows {
+    /// Net heat into each reservoir in W: heaters, interior, cabin, inside and outside of the shell; zero in steady
+    /// state (eq. odes).
+    #[must_use]
+    pub fn net_w(&self) -> [f64; 5] {
+        [
+            self.radiant_heater_power_w
+                - self.convection_radiant_heater_w
+                - self.radiation_heater_interior_w
+                - self.radiation_heater_shell_w,
+            self.solar.interior_w + self.radiation_heater_interior_w
+                - self.convection_interior_w
+                - self.radiation_interior_shell_w,
+            self.passengers_w
+                + self.other_w
+                + self.air_unit_w
+                + self.convection_radiant_heater_w
+                + self.convection_interior_w
+                - self.convection_shell_inside_w
+                - self.door_w,
+            self.convection_shell_inside_w
+                + self.solar.shell_inside_w
+                + self.radiation_heater_shell_w
+                + self.radiation_interior_shell_w
+                - self.conduction_shell_w,
+            self.conduction_shell_w + self.solar.shell_outside_w
+                - self.convection_shell_outside_w
+                - self.radiation_shell_outside_w,
+        ]
+    }
+
+    /// Every flow with its name, in the order of the fields.
+    #[must_use]
+    pub fn named_w(&self) -> [(&'static str, f64); 17] {
+        [
+            ("cabin air to shell", self.convection_shell_inside_w),
+            ("interior to cabin air", self.convection_interior_w),
+            ("shell to ambient air", self.convection_shell_outside_w),
+            ("radiant heaters to cabin air", self.convection_radiant_heater_w),
+            ("through the shell", self.conduction_shell_w),
+            ("shell to surroundings (radiation)", self.radiation_shell_outside_w),
+            ("radiant heaters to shell", self.radiation_heater_shell_w),
+            ("radiant heaters to interior", self.radiation_heater_interior_w),
+            ("interior to shell (radiation)", self.radiation_interior_shell_w),
+            ("through open doors", self.door_w),
+            ("passengers", self.passengers_w),
+            ("electric components", self.other_w),
+            ("air unit", self.air_unit_w),
+            ("radiant heater power", self.radiant_heater_power_w),
+            ("sun on interior", self.solar.interior_w),
+            ("sun on shell inside", self.solar.shell_inside_w),
+            ("sun on shell outside", self.solar.shell_outside_w),
+        ]
+    }
+}

@@ -1,0 +1,178 @@
+//! A steady state of the cabin, found by one Newton iteration over everything at once.
+//!
+//! Unknowns are the temperatures of cabin and surfaces and the clothing temperature of the passengers. A step linearises
+//! the balances and the clothing's heat balance, which makes everything follow the cabin temperature along a line; the
+//! [`Aim`] then says how far along it to go. No clothing iteration and no balance iteration is nested in another.
+
+use crate::comfort::Passenger;
+use crate::{Cabin, Heaters, Slopes, Temperatures};
+
+/// What a steady state has to fulfil besides the surface balances.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Aim {
+    /// A cabin temperature in K.
+    CabinTemperature(f64),
+    /// No heat from the air unit, with the air curtains on or off.
+    Passive {
+        /// Whether the air curtains run.
+        curtain: bool,
+    },
+    /// A mean vote of the passengers.
+    Vote(f64),
+}
+
+/// A steady state, or the guess of one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct State {
+    /// Temperatures of the reservoirs.
+    pub temperatures: Temperatures,
+    /// Slopes of the surfaces over the cabin temperature.
+    pub slopes: Slopes,
+    /// Mean over the passengers of the predicted mean vote.
+    pub pmv: f64,
+    /// Its slope over the cabin temperature in 1/K, above 0.
+    pub pmv_slope: f64,
+    /// The two passengers of the quadrature.
+    gauss: [Passenger; 2],
+}
+
+/// Steps after which the iteration is given up; four are usual from a rough guess.
+const MOST_STEPS: usize = 60;
+/// Convergence is quadratic: what a step below 10 µK leaves behind is below rounding.
+const SETTLED_K: f64 = 1e-5;
+/// Longest step of the cabin temperature in K.
+const LONGEST_STEP_K: f64 = 50.0;
+/// Farthest prediction beyond two states, in units of their distance.
+const FARTHEST: f64 = 3.0;
+
+impl Cabin<'_> {
+    /// A guess that needs no knowledge: everything as warm as the cabin, at `cabin_k` in K.
+    #[must_use]
+    pub fn rough_state(&self, cabin_k: f64) -> State {
+        let temperatures = Temperatures {
+            cabin_k,
+            interior_k: cabin_k,
+            shell_inside_k: cabin_k,
+            shell_outside_k: self.ambient_k,
+            radiant_heater_k: cabin_k,
+        };
+        let slopes = Slopes { interior: 0.0, shell_inside: 0.0, shell_outside: 0.0, radiant_heater: 0.0 };
+        // Clothing is some kelvin warmer than the air.
+        let surface_k = cabin_k + 5.0;
+        let gauss = self.views.nodes().map(|(view, weight)| Passenger::new(view, weight, surface_k));
+        State { temperatures, slopes, pmv: 0.0, pmv_slope: 0.0, gauss }
+    }
+
+    /// The steady state that fulfils an aim, from a guess. The panels are off, or held at their target.
+    ///
+    /// `None` where the iteration does not settle, which no physical input has been seen to cause.
+    #[must_use]
+    pub fn state(&self, aim: Aim, heaters: Heaters, guess: &State) -> Option<State> {
+        let mut state = *guess;
+        if let Aim::CabinTemperature(cabin_k) = aim {
+            state.temperatures.cabin_k = cabin_k;
+        }
+        if heaters == Heaters::On {
+            state.temperatures.radiant_heater_k = self.heater_target_k;
+        }
+        let mut gauss = state.gauss;
+        self.settle(&mut state, &mut gauss, heaters, aim)?;
+        state.gauss = gauss;
+        // The kink moves a little as the state settles on the split quadrature.
+        for _ in 0..2 {
+            let Some(view) = self.kink_view(&state.temperatures, &gauss) else { break };
+            let mut split = self.split(view, &gauss);
+            self.settle(&mut state, &mut split, heaters, aim)?;
+        }
+        Some(state)
+    }
+
+    fn settle(&self, state: &mut State, passengers: &mut [Passenger], heaters: Heaters, aim: Aim) -> Option<()> {
+        (0..MOST_STEPS).find(|_| self.step(state, passengers, heaters, aim) < SETTLED_K).map(|_| ())
+    }
+
+    /// One Newton step; returns the largest change of a temperature in K.
+    fn step(&self, state: &mut State, passengers: &mut [Passenger], heaters: Heaters, aim: Aim) -> f64 {
+        let linear = self.linearise(&state.temperatures, heaters);
+        let slopes = linear.named_slopes();
+        let (pmv, pmv_slope) = self.vote_line(&state.temperatures, &linear, passengers);
+        let cabin_step_k = match aim {
+            Aim::CabinTemperature(_) => 0.0,
+            Aim::Vote(vote) => (vote - pmv) / pmv_slope,
+            Aim::Passive { curtain } => {
+                let (heat_w, slope_w_k) = self.air_unit_heat_w(&state.temperatures, &slopes, curtain);
+                let [heater_k, interior_k, inside_k, _] = linear.shift_k;
+                let shift_w = self.g_heater * heater_k + self.g_interior * interior_k + self.g_shell * inside_k;
+                (shift_w - heat_w) / slope_w_k
+            }
+        };
+        let cabin_step_k = cabin_step_k.clamp(-LONGEST_STEP_K, LONGEST_STEP_K);
+        let [heater_k, interior_k, inside_k, outside_k]: [f64; 4] =
+            std::array::from_fn(|i| linear.shift_k[i] + linear.slopes[i] * cabin_step_k);
+        let t = &mut state.temperatures;
+        t.cabin_k += cabin_step_k;
+        t.radiant_heater_k += heater_k;
+        t.interior_k += interior_k;
+        t.shell_inside_k += inside_k;
+        t.shell_outside_k += outside_k;
+        let mut largest_k = cabin_step_k.abs().max(interior_k.abs()).max(inside_k.abs());
+        largest_k = largest_k.max(outside_k.abs()).max(heater_k.abs());
+        for passenger in passengers {
+            largest_k = largest_k.max(passenger.follow(cabin_step_k));
+        }
+        state.slopes = slopes;
+        state.pmv = pmv + pmv_slope * cabin_step_k;
+        state.pmv_slope = pmv_slope;
+        largest_k
+    }
+}
+
+impl State {
+    /// A guess of the state with the vote `pmv`, extrapolated from this state and, where there is one, the state before it
+    /// on the way: Hermite's cubic through both with their slopes, or the tangent.
+    #[must_use]
+    pub fn toward(&self, pmv: f64, before: Option<&Self>) -> Self {
+        let step = pmv - self.pmv;
+        let last = self.unknowns();
+        let values = match before {
+            Some(before) if step.abs() < FARTHEST * (self.pmv - before.pmv).abs() => {
+                let width = self.pmv - before.pmv;
+                let s = step / width;
+                // Hermite's basis at 1 + s.
+                let (first_value, first_slope) = (s * s * (3.0 + 2.0 * s), s * s * (1.0 + s) * width);
+                let last_slope = s * (1.0 + s) * (1.0 + s) * width;
+                let first = before.unknowns();
+                std::array::from_fn(|i| {
+                    let ((x0, slope0), (x1, slope1)) = (first[i], last[i]);
+                    x1 + (x0 - x1) * first_value + slope0 * first_slope + slope1 * last_slope
+                })
+            }
+            _ => last.map(|(x, slope)| x + slope * step),
+        };
+        self.with(values)
+    }
+
+    /// All unknowns with their slopes over the vote.
+    fn unknowns(&self) -> [(f64, f64); 7] {
+        let (t, slopes) = (&self.temperatures, &self.slopes);
+        let [a, b] = &self.gauss;
+        let per_vote_k = 1.0 / self.pmv_slope;
+        [
+            (t.cabin_k, 1.0),
+            (t.interior_k, slopes.interior),
+            (t.shell_inside_k, slopes.shell_inside),
+            (t.shell_outside_k, slopes.shell_outside),
+            (t.radiant_heater_k, slopes.radiant_heater),
+            (a.surface_k, a.slope),
+            (b.surface_k, b.slope),
+        ]
+        .map(|(x, slope)| (x, slope * per_vote_k))
+    }
+
+    fn with(&self, [cabin_k, interior_k, shell_inside_k, shell_outside_k, radiant_heater_k, a, b]: [f64; 7]) -> Self {
+        let mut guess = *self;
+        guess.temperatures = Temperatures { cabin_k, interior_k, shell_inside_k, shell_outside_k, radiant_heater_k };
+        (guess.gauss[0].surface_k, guess.gauss[1].surface_k) = (a, b);
+        guess
+    }
+}
