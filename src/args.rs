@@ -42,6 +42,8 @@ pub enum Command {
         /// Folder of the new study.
         dir: PathBuf,
     },
+    /// Write the shadow file that a study names, computed for street canyons at its location.
+    Canyon(CanyonArgs),
     /// Validate study and inputs without running; estimate points, time and size.
     Check(StudyArgs),
     /// Read missions and weather files.
@@ -137,9 +139,29 @@ pub struct DemoArgs {
     #[arg(long, value_name = "METADATA.csv")]
     pub like: Option<PathBuf>,
 
+    /// A file of real weather instead of the synthetic one: MeteoSwiss' open data (ogd-smn_…), a SIA 4028 year, or hourly
+    /// CSV with the columns interval_start_utc, T_degC and StrGlo_Wm2.
+    #[arg(long, value_name = "FILE")]
+    pub weather: Option<PathBuf>,
+
     /// With --like: bus to take; may be given several times [default: 183].
     #[arg(long = "bus", value_name = "NUMBER", requires = "like")]
     pub buses: Vec<u32>,
+}
+
+#[derive(Debug, ClapArgs)]
+pub struct CanyonArgs {
+    #[command(flatten)]
+    pub study: StudyArgs,
+
+    /// Direction of a street from north in degrees; may be given several times [default: eight, evenly spread].
+    #[arg(long = "street-azimuth-deg", value_name = "A", allow_negative_numbers = true)]
+    pub street_azimuths_deg: Vec<f64>,
+
+    /// Height of the walls over the width of a street; may be given several times, each with equal share [default: a
+    /// mixture of 0, 0.5, 1 and 1.5].
+    #[arg(long = "height-to-width", value_name = "H")]
+    pub heights_to_width: Vec<f64>,
 }
 
 #[derive(Debug, ClapArgs)]

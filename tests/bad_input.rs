@@ -157,3 +157,68 @@ fn cli_wrong_study_files_and_arguments_end_with_2() {
     let run = scratch.expect(3, &["demo", "x", "--like", "shadow.csv"]);
     assert!(run.stderr.contains("the column busNumber is missing"), "{}", run.stderr);
 }
+
+#[test]
+fn cli_the_same_mission_under_two_names_counts_once() {
+    let scratch = Scratch::demo(2);
+    let name = scratch.missions().remove(0);
+    let content = scratch.read(&format!("ztbus/{name}"));
+    // The same content as a mission of another bus, and as a copy that a file manager has made.
+    scratch.write(&format!("ztbus/{}", name.replacen("B183", "B208", 1)), &content);
+    scratch.write(&format!("ztbus/{}", name.replacen(".csv", " (1).csv", 1)), &content);
+    scratch.edit("study.toml", "buses = [183]", "buses = []");
+    for _ in 0..2 {
+        let run = scratch.expect(1, &["run"]);
+        assert!(run.stderr.contains("under another name; remove one of them"), "{}", run.stderr);
+        assert!(run.stderr.contains("the name is not that of a mission"), "{}", run.stderr);
+        assert_eq!(scratch.query("SELECT count(DISTINCT mission) FROM sample"), [["2"]]);
+    }
+}
+
+#[test]
+fn cli_impossible_values_are_recorded_with_lines() {
+    let scratch = Scratch::demo(2);
+    // An ambient temperature in °C where kelvin belong.
+    let file = format!("ztbus/{}", scratch.missions().remove(0));
+    let text = scratch.read(&file);
+    let header: Vec<&str> = text.lines().next().unwrap_or("").trim_end().split(',').collect();
+    let column = header.iter().position(|h| *h == "temperature_ambient").expect("the column is there");
+    let line = text.lines().nth(50).expect("a row").to_owned();
+    let mut fields: Vec<&str> = line.split(',').collect();
+    // Stop names are quoted and may hold a comma, but stand behind this column or nowhere near row 50.
+    fields[column] = "11.5";
+    scratch.write(&file, text.replacen(&line, &fields.join(","), 1));
+    // A negative irradiance in the weather, far below what a sensor shows at night.
+    let weather = "weather/ogd-smn_sma_h_historical_2020-2029.csv";
+    let text = scratch.read(weather);
+    let line = text.lines().nth(4000).expect("a row").to_owned();
+    let mut fields: Vec<&str> = line.split(';').collect();
+    fields[3] = "-120";
+    scratch.write(weather, text.replacen(&line, &fields.join(";"), 1));
+    scratch.expect(0, &["run"]);
+    let found = scratch.query(
+        "SELECT q.kind, q.line, q.column_name FROM source_file JOIN data_quality AS q USING (source_file_id) ORDER BY q.kind",
+    );
+    let has =
+        |kind: &str, line: &str, column: &str| found.iter().any(|r| r[0] == kind && r[1] == line && r[2] == column);
+    assert!(has("wrong_unit", "51", "temperature_ambient"), "{found:?}");
+    assert!(has("out_of_range", "4001", "gre000h0"), "{found:?}");
+}
+
+#[test]
+fn cli_weather_that_does_not_cover_the_missions_excludes_them_with_a_reason() {
+    let scratch = Scratch::demo(6);
+    let weather = "weather/ogd-smn_sma_h_historical_2020-2029.csv";
+    let text = scratch.read(weather);
+    let half: Vec<&str> = text.split_inclusive('\n').take(4000).collect();
+    scratch.write(weather, half.concat());
+    let run = scratch.expect(0, &["run"]);
+    assert!(run.stderr.contains("segments excluded"), "{}", run.stderr);
+    let reasons = scratch.query("SELECT DISTINCT reason FROM excluded_segment WHERE reason LIKE 'outside%'");
+    assert_eq!(reasons, [["outside the weather record"]]);
+    assert!(scratch.read("report/report.md").contains("outside the weather record"));
+    let none: Vec<&str> = text.split_inclusive('\n').take(20).collect();
+    scratch.write(weather, none.concat());
+    let run = scratch.expect(3, &["run"]);
+    assert!(run.stderr.contains("no samples") && run.stderr.contains("outside the weather record"), "{}", run.stderr);
+}

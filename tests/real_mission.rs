@@ -15,15 +15,14 @@ fn xval_python_samples_of_the_real_mission() {
         eprintln!("skipped: no {MISSION} and {WEATHER} under {}; set BUSCLIMATE_DATA", data().display());
         return;
     }
-    let scratch = Scratch::demo(1);
-    std::fs::create_dir(scratch.path("real")).unwrap();
-    std::fs::copy(&mission, scratch.path("real").join(mission.file_name().unwrap())).unwrap();
-    std::fs::copy(&weather, scratch.path("weather.csv")).unwrap();
-    scratch.edit("study.toml", "path = \"ztbus\"", "path = \"real\"");
-    let map = "format = \"csv\"\ntime_column = \"interval_start_utc\"\ntime_label = \"start\"\ninterval_s = 3600\n\
-        temperature_column = \"T_degC\"\nghi_column = \"StrGlo_Wm2\"";
-    scratch.edit("study.toml", "format = \"meteoswiss-ogd\"", map);
-    scratch.edit("study.toml", "path = \"weather\"", "path = \"weather.csv\"");
+    let scratch = Scratch::empty();
+    let study = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/01-one-mission/study.toml");
+    std::fs::copy(study, scratch.path("study.toml")).unwrap();
+    for (folder, file) in [("ztbus", &mission), ("weather", &weather)] {
+        std::fs::create_dir(scratch.path(folder)).unwrap();
+        std::fs::copy(file, scratch.path(folder).join(file.file_name().unwrap())).unwrap();
+    }
+    scratch.expect(0, &["canyon"]);
     scratch.expect(0, &["run"]);
     let ours = scratch.query(
         "SELECT segment, start_utc, passengers, door_open_fraction, ambient_temperature_c, dni_w_m2, dhi_w_m2,

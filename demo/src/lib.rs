@@ -10,7 +10,6 @@
 mod files;
 mod plan;
 mod random;
-mod shade;
 mod telemetry;
 mod weather;
 
@@ -18,6 +17,7 @@ pub use plan::{MissionPlan, PlanError, default_plan, read_meta_data};
 pub use weather::SyntheticWeather;
 
 use rayon::prelude::*;
+use shading::{Site, canyon_year, town_streets};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -63,7 +63,8 @@ pub enum DemoError {
 }
 
 /// Writes missions, `metaData.csv`, weather and shadow fractions for these plans under `folder`, on rayon's current
-/// pool. `progress` is told how many of how many missions stand.
+/// pool. `weather` is a file of real weather, name and content, that takes the place of the synthetic one. `progress` is
+/// told how many of how many missions stand.
 ///
 /// # Errors
 /// [`DemoError`] where nothing is planned or a file cannot be written.
@@ -71,6 +72,7 @@ pub fn write(
     folder: &Path,
     seed: u64,
     plans: &[MissionPlan],
+    weather: Option<(&str, &[u8])>,
     progress: &(dyn Fn(u64, u64) + Sync),
 ) -> Result<Summary, DemoError> {
     let (Some(first), Some(last)) = (plans.iter().map(|p| p.start).min(), plans.iter().map(|p| p.end).max()) else {
@@ -94,11 +96,17 @@ pub fn write(
         .collect::<Result<_, DemoError>>()?;
     files::write(&missions.join("metaData.csv"), &telemetry::meta_data(plans, &written))?;
 
-    let weather = SyntheticWeather::new(seed, first, last);
-    for (name, bytes) in weather.files() {
-        files::write(&folder.join(WEATHER).join(name), &bytes)?;
+    match weather {
+        Some((name, bytes)) => files::write(&folder.join(WEATHER).join(name), bytes)?,
+        None => {
+            for (name, bytes) in SyntheticWeather::new(seed, first, last).files() {
+                files::write(&folder.join(WEATHER).join(name), &bytes)?;
+            }
+        }
     }
-    files::write(&folder.join(SHADOW), &shade::file())?;
+    let site = Site::new(LATITUDE_DEG, LONGITUDE_DEG).expect("the demo's place lies on the globe");
+    let shadow = canyon_year(&site, &town_streets()).to_csv();
+    files::write(&folder.join(SHADOW), shadow.as_bytes())?;
     Ok(Summary {
         missions: plans.len() as u64,
         rows: written.iter().map(|w| w.rows).sum(),

@@ -23,7 +23,7 @@ fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
 
 fn write(folder: &Path, seed: u64, plans: &[MissionPlan], threads: usize) -> demo::Summary {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-    pool.install(|| demo::write(folder, seed, plans, &|_, _| ())).unwrap()
+    pool.install(|| demo::write(folder, seed, plans, None, &|_, _| ())).unwrap()
 }
 
 /// Column of a mission's file as text.

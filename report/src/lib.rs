@@ -5,11 +5,13 @@
 
 mod figure;
 mod findings;
+mod headline;
 mod markdown;
 mod numbers;
 mod tables;
 
 pub use findings::{PaperFinding, Verdict, paper_findings};
+pub use headline::headline;
 
 use store::{
     AnnualRow, DesignRow, ExclusionCount, LimitShare, MonthRow, MonthlyRow, StatusCounts, StoredFile, StoredFinding,

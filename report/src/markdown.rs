@@ -5,14 +5,11 @@ use minijinja::value::Value;
 use minijinja::{AutoEscape, Environment, Error, Output, State, context};
 use std::fmt::Write as _;
 
+use crate::headline::{answer, shown_window};
 use crate::numbers::{month, percent, watts, window};
 use crate::{PaperFinding, ReportError, StudyReport};
 
 const TEMPLATE: &str = include_str!("../templates/report.md");
-/// The window that single-window tables show, where the study has it.
-const SHOWN: (f64, f64) = (-1.0, 1.0);
-/// A stricter window to compare with it.
-const STRICTER: (f64, f64) = (-0.5, 0.5);
 /// Findings that the report lists one by one; all of them are in data_quality.csv.
 const LISTED: usize = 40;
 
@@ -29,7 +26,7 @@ pub(crate) fn render(study: &StudyReport, findings: &[PaperFinding]) -> Result<S
 
 fn content(study: &StudyReport, findings: &[PaperFinding]) -> Value {
     let windows = study.windows();
-    let shown = if windows.contains(&SHOWN) { Some(SHOWN) } else { windows.get(windows.len() / 2).copied() };
+    let shown = shown_window(study);
     let names: Vec<&str> = study.designs.iter().map(|d| d.name.as_str()).collect();
     let by_design = |cell: &dyn Fn(&str) -> String| names.iter().map(|n| cell(n)).collect::<Vec<_>>();
 
@@ -123,7 +120,7 @@ fn content(study: &StudyReport, findings: &[PaperFinding]) -> Value {
     context! {
         name => &study.name, note => &study.note, version => &study.program_version,
         study_hash => &study.study_hash, input_hash => &study.input_hash,
-        answer => answer(study, shown), designs => by_design(&str::to_owned), shown => shown.map(window),
+        answer => answer(study), designs => by_design(&str::to_owned), shown => shown.map(window),
         missing => missing.iter().map(|m| month(*m)).collect::<Vec<_>>().join(", "), missing_count => missing.len(),
         refused => study.files.iter().filter(|f| !f.accepted).count(),
         samples => study.months.iter().map(|m| m.sample_count).sum::<u64>(), points,
@@ -149,38 +146,6 @@ fn content(study: &StudyReport, findings: &[PaperFinding]) -> Value {
 
 fn yes(is: bool) -> &'static str {
     if is { "yes" } else { "no" }
-}
-
-/// The question of the study, answered in two sentences.
-fn answer(study: &StudyReport, shown: Option<(f64, f64)>) -> Option<String> {
-    let shown = shown?;
-    let power = |d: &str, w| study.annual_power_w(d, w);
-    let cheapest = study
-        .designs
-        .iter()
-        .filter_map(|d| Some((d.name.as_str(), power(&d.name, shown)?)))
-        .min_by(|a, b| a.1.total_cmp(&b.1))?;
-    let mut text = format!(
-        "Within PMV {}, the design {} is the cheapest: {} W averaged over the year",
-        window(shown),
-        cheapest.0,
-        watts(Some(cheapest.1))
-    );
-    match power("ptc", shown) {
-        Some(reference) if cheapest.0 != "ptc" && reference > 0.0 => {
-            let _ = write!(text, ", {} less than ptc.", percent(Some(1.0 - cheapest.1 / reference)));
-        }
-        _ => text.push('.'),
-    }
-    if let Some(stricter) = power(cheapest.0, STRICTER).filter(|_| shown == SHOWN) {
-        let _ = write!(
-            text,
-            " Comfort within PMV {} costs {} W more.",
-            window(STRICTER),
-            watts(Some(stricter - cheapest.1))
-        );
-    }
-    Some(text)
 }
 
 /// Text from outside must not break a table or the page.

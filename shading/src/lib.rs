@@ -1,10 +1,12 @@
 //! Where the sun stands, and how much of the road lies in the shade.
 //!
 //! Pure functions of place and time: [`Site::sun`] gives solar altitude and azimuth, [`ShadowYear`] the share of the
-//! road that is shaded, taken from an hourly series of one reference year.
+//! road that is shaded, taken from an hourly series of one reference year; [`canyon_year`] makes such a series for street canyons.
 
+mod canyon;
 mod shadow;
 mod sun;
 
-pub use shadow::{ShadowError, ShadowYear, canyon_shadow_fraction};
+pub use canyon::{Street, canyon_shadow_fraction, canyon_year, even_azimuths_rad, town_streets};
+pub use shadow::{ShadowError, ShadowYear};
 pub use sun::{Site, SiteError, SunPosition};

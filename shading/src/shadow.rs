@@ -3,8 +3,6 @@
 use chrono::{DateTime, Datelike, Duration, DurationRound, TimeZone, Timelike, Utc};
 use std::io::Read;
 
-use crate::SunPosition;
-
 const HOURS: usize = 8760;
 
 /// Shadow fractions at the full hours of one reference year, repeated by calendar date.
@@ -120,6 +118,18 @@ impl ShadowYear {
         &self.hourly
     }
 
+    /// The year as [`ShadowYear::read`] reads it, with the stamps of 2022.
+    #[must_use]
+    pub fn to_csv(&self) -> String {
+        let start = Utc.with_ymd_and_hms(2022, 1, 1, 0, 0, 0).single().expect("1 January 2022 exists");
+        let mut text = "time_utc,shadow_fraction\n".to_owned();
+        for (hour, fraction) in self.hourly.iter().enumerate() {
+            let time = (start + Duration::hours(hour as i64)).format("%Y-%m-%dT%H:%M:%SZ");
+            text += &format!("{time},{fraction:.4}\n");
+        }
+        text
+    }
+
     /// Shadow fraction at an instant, linear between full hours.
     #[must_use]
     pub fn at(&self, instant: DateTime<Utc>) -> f64 {
@@ -150,22 +160,6 @@ impl ShadowYear {
     fn at_full_hour(&self, hour: DateTime<Utc>) -> f64 {
         self.hourly[hour_of_year(hour)]
     }
-}
-
-/// Shaded share of the floor of a street canyon of infinite length, under direct sun.
-///
-/// With the sun below the horizon the street is in the shade. Else the wall on the sunny side throws a shadow of width
-/// `height · cos(altitude) / sin(altitude) · |sin(azimuth − street)|` across the street (Johnson and Watson 1984,
-/// doi 10.1175/1520-0450(1984)023<0329:TDOVFI>2.0.CO;2).
-///
-/// `height_to_width` is dimensionless and not negative, `street_azimuth_rad` the direction of the street from north.
-#[must_use]
-pub fn canyon_shadow_fraction(sun: SunPosition, street_azimuth_rad: f64, height_to_width: f64) -> f64 {
-    if sun.altitude_rad <= 0.0 {
-        return 1.0;
-    }
-    let across = (sun.azimuth_rad - street_azimuth_rad).sin().abs();
-    (height_to_width * across / sun.altitude_rad.tan()).min(1.0)
 }
 
 fn full_hour(instant: DateTime<Utc>) -> DateTime<Utc> {

@@ -2,7 +2,7 @@
 
 use ingest::mission::{self, MissionSource};
 use ingest::weather::{self, Weather};
-use ingest::{FileRecord, Finding};
+use ingest::{FileKind, FileRecord, Finding, FindingKind};
 use std::collections::BTreeMap;
 use store::{FileRow, FindingRow, SegmentRow, Store};
 
@@ -33,7 +33,7 @@ fn missions(study: &Study, store: &mut Store, console: &Console, stop: Stop) -> 
     let read = |buffer: &mut Vec<u8>, source: &&MissionSource| {
         let content = match source.load(std::mem::take(buffer)) {
             Ok(content) => content,
-            Err(record) => return Some((refused_row(record), Vec::new())),
+            Err(record) => return (String::new(), source.path.clone(), Some((refused_row(record), Vec::new()))),
         };
         let key = study.reading_key(&content.blake3, &settings);
         let reading = (known.get(&source.path) != Some(&key)).then(|| {
@@ -41,16 +41,27 @@ fn missions(study: &Study, store: &mut Store, console: &Console, stop: Stop) -> 
             let segments = segment_rows(source.bus, &reading);
             (file_row(reading.file, key), segments)
         });
+        let blake3 = content.blake3.clone();
         *buffer = content.bytes;
-        reading
+        (blake3, source.path.clone(), reading)
     };
-    ingest::in_order(&wanted, READERS_A_THREAD * rayon::current_num_threads(), read, |reading| {
+    // The first path of every content.
+    let mut contents: BTreeMap<String, String> = BTreeMap::new();
+    ingest::in_order(&wanted, READERS_A_THREAD * rayon::current_num_threads(), read, |(blake3, path, reading)| {
         if stop() {
             return Err(Failure::Interrupted);
         }
-        if let Some((file, segments)) = reading {
-            store.put_file(&file, &segments)?;
-            read_now += 1;
+        if let Some(first) = contents.get(&blake3).filter(|_| !blake3.is_empty()) {
+            let message = format!("the same content as {first}, under another name; remove one of them");
+            let finding = Finding::whole(FindingKind::Overlap, message);
+            let record = FileRecord::refused(&path, FileKind::Mission, &blake3, 0, finding);
+            store.put_file(&refused_row(record), &[])?;
+        } else {
+            contents.insert(blake3, path);
+            if let Some((file, segments)) = reading {
+                store.put_file(&file, &segments)?;
+                read_now += 1;
+            }
         }
         bar.inc(1);
         Ok(())

@@ -45,11 +45,12 @@ pub fn run(study: &Study, stages: &[Stage], console: &Console, stop: Stop) -> Re
         [Stage::Report] => None,
         _ => Some(store.start_run(&now(), env!("CARGO_PKG_VERSION"), &study.hash)?),
     };
+    let mut found = Vec::new();
     let outcome = stages.iter().try_for_each(|stage| match stage {
         Stage::Ingest => ingest::ingest(study, &mut store, console, stop),
         Stage::Shade => shade::shade(study, &mut store, console),
         Stage::Solve => solve::solve(study, &mut store, console, stop),
-        Stage::Report => report::report(study, &mut store),
+        Stage::Report => report::report(study, &mut store).map(|lines| found = lines),
     });
     let summary = Summary::of(study, &mut store)?;
     if let Some(id) = run_id {
@@ -76,6 +77,9 @@ pub fn run(study: &Study, stages: &[Stage], console: &Console, stop: Stop) -> Re
         summary.refused.len(),
         begin.elapsed().as_secs_f64()
     ))?;
+    for line in found {
+        say(format_args!("{line}"))?;
+    }
     if stages.contains(&Stage::Report) {
         say(format_args!("report: {}", study.report_dir.join("report.md").display()))?;
     }

@@ -10,7 +10,8 @@ use super::input_hash;
 use crate::failure::Failure;
 use crate::study::Study;
 
-pub fn report(study: &Study, store: &mut Store) -> Result<(), Failure> {
+/// Writes the report and returns what the study found, in a few lines.
+pub fn report(study: &Study, store: &mut Store) -> Result<Vec<String>, Failure> {
     let content = StudyReport {
         name: study.name.clone(),
         note: study.note.clone(),
@@ -35,7 +36,7 @@ pub fn report(study: &Study, store: &mut Store) -> Result<(), Failure> {
     for file in files {
         write_beside(&study.report_dir.join(file.name), &file.bytes).map_err(Failure::Inputs)?;
     }
-    Ok(())
+    Ok(report::headline(&content))
 }
 
 /// Writes beside the place and renames, so that a file that is there is whole.

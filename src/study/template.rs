@@ -7,6 +7,32 @@ pub struct Template<'a> {
     pub name: &'a str,
     pub note: Option<&'a str>,
     pub buses: &'a [u32],
+    pub weather: WeatherKeys,
+}
+
+/// The keys of `[weather]` that tell how its files are read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum WeatherKeys {
+    MeteoSwissOgd,
+    Sia4028,
+    /// Hourly, stamped at the start, with the columns of Zürich's own stations.
+    HourlyCsv,
+}
+
+impl WeatherKeys {
+    fn lines(self) -> [&'static str; 2] {
+        const MAP: &str = "# format = \"csv\" only:\n# time_column = \"interval_start_utc\"\n\
+            # time_label = \"start\"            # or \"end\"\n# interval_s = 3600\n# temperature_column = \"T_degC\"\n\
+            # ghi_column = \"StrGlo_Wm2\"       # and/or dhi_column, dni_column\n";
+        const GIVEN: &str = "time_column = \"interval_start_utc\"\ntime_label = \"start\"              # or \"end\"\n\
+            interval_s = 3600\ntemperature_column = \"T_degC\"\n\
+            ghi_column = \"StrGlo_Wm2\"         # and/or dhi_column, dni_column\n";
+        match self {
+            Self::MeteoSwissOgd => ["format = \"meteoswiss-ogd\"         # or \"sia4028\", \"csv\"", MAP],
+            Self::Sia4028 => ["format = \"sia4028\"                # or \"meteoswiss-ogd\", \"csv\"", MAP],
+            Self::HourlyCsv => ["format = \"csv\"                    # or \"meteoswiss-ogd\", \"sia4028\"", GIVEN],
+        }
+    }
 }
 
 /// A commented study file with every default.
@@ -17,7 +43,10 @@ pub fn render(template: &Template) -> String {
     };
     let vehicle = toml::to_string(&Vehicle::default()).expect("a flat struct of numbers becomes TOML");
     let vehicle: String = vehicle.lines().map(|line| format!("# {line}\n")).collect();
+    let [format, map] = template.weather.lines();
     include_str!("template.toml")
+        .replace("@FORMAT@", format)
+        .replace("@MAP@", map)
         .replace("@NAME@", &quoted(template.name))
         .replace("@NOTE@", &note)
         .replace("@BUSES@", &format!("{:?}", template.buses))
@@ -34,7 +63,12 @@ mod tests {
 
     #[test]
     fn cli_the_template_is_a_study_with_the_defaults() {
-        let text = render(&Template { name: "a \"name\"", note: Some("a note"), buses: &[183] });
+        let text = render(&Template {
+            name: "a \"name\"",
+            note: Some("a note"),
+            buses: &[183],
+            weather: WeatherKeys::HourlyCsv,
+        });
         let file: super::super::file::StudyFile = toml::from_str(&text).unwrap();
         assert_eq!((file.name.as_str(), file.note.as_deref()), ("a \"name\"", Some("a note")));
         assert_eq!(file.missions.buses, [183]);

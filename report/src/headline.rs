@@ -1,0 +1,76 @@
+//! What a study found, in a few lines.
+
+use std::fmt::Write as _;
+
+use crate::numbers::{percent, watts, window};
+use crate::{StudyReport, Verdict, paper_findings};
+
+/// The window that single-window tables show, where the study has it.
+const SHOWN: (f64, f64) = (-1.0, 1.0);
+/// A stricter window to compare with it.
+const STRICTER: (f64, f64) = (-0.5, 0.5);
+
+/// The window that stands for the study where only one is shown.
+pub(crate) fn shown_window(study: &StudyReport) -> Option<(f64, f64)> {
+    let windows = study.windows();
+    if windows.contains(&SHOWN) { Some(SHOWN) } else { windows.get(windows.len() / 2).copied() }
+}
+
+/// Up to three lines: the cheapest design, what binds, and how the paper's findings compare. None without optima.
+#[must_use]
+pub fn headline(study: &StudyReport) -> Vec<String> {
+    let Some(answer) = answer(study) else { return Vec::new() };
+    let mut lines = vec![answer];
+    let shown = shown_window(study);
+    let binding = study.limit_shares.iter().rev().find(|s| Some((s.pmv_min, s.pmv_max)) == shown && s.solved_count > 0);
+    if let (Some(s), Some(shown)) = (binding, shown) {
+        let share = |count: u64| percent(Some(count as f64 / s.solved_count as f64));
+        lines.push(format!(
+            "With {} at PMV {}, the lower limit binds in {} of the hours, the air unit cools in {}.",
+            s.design,
+            window(shown),
+            share(s.lower_count),
+            share(s.cooling_count)
+        ));
+    }
+    let findings = paper_findings(study);
+    let count = |verdict| findings.iter().filter(|f| f.verdict == verdict).count();
+    let (within, outside) = (count(Verdict::Within), count(Verdict::Outside));
+    lines.push(format!(
+        "Of the paper's findings, {within} hold here, {outside} lie outside their range, {} are not covered.",
+        count(Verdict::NotCovered)
+    ));
+    lines
+}
+
+/// The question of the study, answered in two sentences.
+pub(crate) fn answer(study: &StudyReport) -> Option<String> {
+    let shown = shown_window(study)?;
+    let power = |d: &str, w| study.annual_power_w(d, w);
+    let cheapest = study
+        .designs
+        .iter()
+        .filter_map(|d| Some((d.name.as_str(), power(&d.name, shown)?)))
+        .min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let mut text = format!(
+        "Within PMV {}, the design {} is the cheapest: {} W averaged over the year",
+        window(shown),
+        cheapest.0,
+        watts(Some(cheapest.1))
+    );
+    match power("ptc", shown) {
+        Some(reference) if cheapest.0 != "ptc" && reference > 0.0 => {
+            let _ = write!(text, ", {} less than ptc.", percent(Some(1.0 - cheapest.1 / reference)));
+        }
+        _ => text.push('.'),
+    }
+    if let Some(stricter) = power(cheapest.0, STRICTER).filter(|_| shown == SHOWN) {
+        let _ = write!(
+            text,
+            " Comfort within PMV {} costs {} W more.",
+            window(STRICTER),
+            watts(Some(stricter - cheapest.1))
+        );
+    }
+    Some(text)
+}
