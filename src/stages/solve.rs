@@ -30,7 +30,8 @@ pub fn solve(study: &Study, store: &mut Store, console: &Console, stop: Stop) ->
             };
             (id, optimum, efforts.map(|e| e[i]))
         });
-        outcome = store.put_optima(keyed).map_err(Failure::from);
+        let ids: Vec<i64> = missing[first..first + optima.len() / points].iter().map(|s| s.sample_id).collect();
+        outcome = store.put_optima(&ids, keyed).map_err(Failure::from);
         efforts.into_iter().flatten().for_each(|effort| total.add(effort));
         bar.inc((optima.len() / points) as u64);
         if outcome.is_ok() && stop() {

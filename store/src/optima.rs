@@ -68,34 +68,54 @@ impl Store {
         })
     }
 
-    /// Writes optima in one transaction; a point that is there already is replaced. Rows in the order of their key
-    /// append to the table and are fastest. Methods that iterate say what a point has cost.
+    /// Writes optima in one transaction; whatever `samples` had of them is replaced. Rows in the order of their key append
+    /// to the table and are fastest. Methods that iterate say what a point has cost.
     ///
     /// # Errors
     /// [`StoreError::Statement`].
     pub fn put_optima<'a>(
         &mut self,
-        points: impl Iterator<Item = (PointId, &'a Optimum, Option<Effort>)>,
+        samples: &[i64],
+        mut points: impl Iterator<Item = (PointId, &'a Optimum, Option<Effort>)>,
     ) -> Result<(), StoreError> {
         self.drive(async |c| {
             let mut tx = c.begin().await?;
+            // Deleting first leaves plain inserts, which cost less than replacing ones.
+            let ids = samples.iter().map(i64::to_string).collect::<Vec<_>>().join(",");
+            sqlx::query("DELETE FROM optimum_point WHERE sample_id IN (SELECT value FROM json_each(?))")
+                .bind(format!("[{ids}]"))
+                .execute(&mut *tx)
+                .await?;
             let full = insert_statement(ROWS);
-            let mut arguments = SqliteArguments::default();
-            let mut rows = 0;
-            for (id, optimum, effort) in points {
-                add_row(&mut arguments, id, optimum, effort).map_err(sqlx::Error::Encode)?;
-                rows += 1;
-                if rows == ROWS {
-                    execute(&mut tx, full.clone(), std::mem::take(&mut arguments)).await?;
-                    rows = 0;
-                }
-            }
-            if rows > 0 {
-                execute(&mut tx, insert_statement(rows), arguments).await?;
+            let mut chunk = encode(&mut points)?;
+            while chunk.rows > 0 {
+                let sql = if chunk.rows == ROWS { full.clone() } else { insert_statement(chunk.rows) };
+                // SQLite works on a thread of its own: the next rows are put together meanwhile.
+                let (written, next) =
+                    tokio::join!(execute(&mut tx, sql, chunk.arguments), async { encode(&mut points) });
+                written?;
+                chunk = next?;
             }
             Ok(tx.commit().await?)
         })
     }
+}
+
+/// The values of up to [`ROWS`] rows.
+#[derive(Default)]
+struct Chunk {
+    arguments: SqliteArguments,
+    rows: usize,
+}
+
+fn encode<'a>(points: &mut impl Iterator<Item = (PointId, &'a Optimum, Option<Effort>)>) -> Result<Chunk, StoreError> {
+    let mut chunk = Chunk::default();
+    chunk.arguments.reserve(ROWS * COLUMNS, 0);
+    for (id, optimum, effort) in points.take(ROWS) {
+        add_row(&mut chunk.arguments, id, optimum, effort).map_err(sqlx::Error::Encode)?;
+        chunk.rows += 1;
+    }
+    Ok(chunk)
 }
 
 async fn execute(c: &mut SqliteConnection, sql: String, arguments: SqliteArguments) -> Result<(), StoreError> {
@@ -106,7 +126,7 @@ async fn execute(c: &mut SqliteConnection, sql: String, arguments: SqliteArgumen
 
 fn insert_statement(rows: usize) -> String {
     let row = format!("({})", vec!["?"; COLUMNS].join(","));
-    format!("INSERT OR REPLACE INTO optimum_point VALUES {}", vec![row; rows].join(","))
+    format!("INSERT INTO optimum_point VALUES {}", vec![row; rows].join(","))
 }
 
 fn add_row(

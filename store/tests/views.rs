@@ -140,7 +140,7 @@ fn filled(store: &mut Store) {
             points.push((PointId { sample_id: sample.sample_id, design_id, window_id }, optimum));
         }
     }
-    store.put_optima(points.iter().map(|(id, optimum)| (*id, optimum, None))).unwrap();
+    store.put_optima(&[], points.iter().map(|(id, optimum)| (*id, optimum, None))).unwrap();
 }
 
 #[test]
