@@ -37,9 +37,12 @@ pub struct Cabin<'a> {
     r_heater_shell: f64,
     r_interior_shell: f64,
     r_outside: f64,
-    /// Door loss in W/K^1.5 without curtain.
+    passenger_heat_w: f64,
+    /// Door loss in W/K^1.5 without curtain, with all doors open and as they are.
+    door_all_open: f64,
     door: f64,
     curtain_keeps: f64,
+    curtain_power_all_open_w: f64,
     curtain_power_w: f64,
     pub(crate) heater_target_k: f64,
     pub(crate) view_interior: f64,
@@ -70,6 +73,7 @@ impl<'a> Cabin<'a> {
             * (v.gravity_m_s2 * v.door_height_m * v.door_height_m * v.door_height_m).sqrt()
             * v.door_width_m
             / 3.0;
+        let door_all_open = air_w_k * exchange / ambient_k.sqrt();
         let clothing = clothing_insulation_clo(ambient_k, v.clothing_floor_clo);
         let pmv = PmvModel::new(clothing, v.metabolic_rate_met, v.relative_humidity, v.air_velocity_m_s);
         Self {
@@ -85,14 +89,27 @@ impl<'a> Cabin<'a> {
             r_heater_shell: sigma * v.radiant_heater_area_m2 * v.view_factor_heater_shell,
             r_interior_shell: sigma * v.interior_area_m2 * v.view_factor_interior_shell,
             r_outside: sigma * v.shell_area_m2,
-            door: air_w_k * exchange / ambient_k.sqrt() * disturbances.door_open_fraction,
+            passenger_heat_w: v.passenger_heat_w,
+            door_all_open,
+            door: door_all_open * disturbances.door_open_fraction,
             curtain_keeps: 1.0 - v.air_curtain_loss_reduction,
+            curtain_power_all_open_w: v.air_curtain_power_w,
             curtain_power_w: v.air_curtain_power_w * disturbances.door_open_fraction,
             heater_target_k: v.radiant_heater_target_k,
             view_interior: v.view_factor_passenger_interior,
             views,
             pmv,
         }
+    }
+
+    /// The same cabin with other passengers on board and another fraction of the doors open.
+    #[must_use]
+    #[inline]
+    pub fn with_load(mut self, passengers: f64, door_open_fraction: f64) -> Self {
+        self.gains_w[0] = passengers * self.passenger_heat_w;
+        self.door = self.door_all_open * door_open_fraction;
+        self.curtain_power_w = self.curtain_power_all_open_w * door_open_fraction;
+        self
     }
 
     /// Ambient temperature in K.
@@ -136,6 +153,7 @@ impl<'a> Cabin<'a> {
 
     /// Every heat flow at the given temperatures, with the given air unit heat and heater power in W.
     #[must_use]
+    #[inline]
     pub fn flows(&self, t: &Temperatures, curtain: bool, air_unit_w: f64, radiant_heater_power_w: f64) -> HeatFlows {
         let [heater4, interior4, shell4] = [t.radiant_heater_k, t.interior_k, t.shell_inside_k].map(pow4);
         HeatFlows {
@@ -158,6 +176,7 @@ impl<'a> Cabin<'a> {
     }
 
     /// Door loss in W (eq. qdoor, exact square root) and its slope in W/K.
+    #[inline]
     fn door_w(&self, cabin_k: f64, curtain: bool) -> (f64, f64) {
         let difference = cabin_k - self.ambient_k;
         let kept = if curtain { self.curtain_keeps } else { 1.0 };
@@ -209,6 +228,7 @@ impl Linear {
 }
 
 /// Fourth power of a temperature.
+#[inline]
 pub(crate) fn pow4(k: f64) -> f64 {
     let square = k * k;
     square * square

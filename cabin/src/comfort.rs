@@ -29,7 +29,35 @@ impl Passenger {
     }
 }
 
+/// The clothing of the two passengers of the quadrature, followed through time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Clothes([Passenger; 2]);
+
+/// Surfaces that stand still.
+const STILL: Linear = Linear { shift_k: [0.0; 4], slopes: [0.0; 4] };
+
 impl Cabin<'_> {
+    /// Clothing that is settled at the given temperatures.
+    #[must_use]
+    pub fn clothes(&self, t: &Temperatures) -> Clothes {
+        let mut clothes =
+            Clothes(self.views.nodes().map(|(view, weight)| Passenger::new(view, weight, t.cabin_k + 5.0)));
+        for _ in 0..20 {
+            self.follow_vote(t, &mut clothes);
+        }
+        clothes
+    }
+
+    /// Mean vote of the passengers at temperatures that change slowly: one Newton step of each clothing from where it was,
+    /// which is good to 1e-5 votes where the surfaces have moved by some hundredths of a kelvin.
+    pub fn follow_vote(&self, t: &Temperatures, clothes: &mut Clothes) -> f64 {
+        let (vote, _) = self.vote_line(t, &STILL, &mut clothes.0);
+        for passenger in &mut clothes.0 {
+            passenger.follow(0.0);
+        }
+        vote
+    }
+
     /// Mean vote of the passengers where balances and clothing hold to first order, and its slope in 1/K over the cabin
     /// temperature. Leaves in each passenger how its clothing follows.
     pub(crate) fn vote_line(&self, t: &Temperatures, linear: &Linear, passengers: &mut [Passenger]) -> (f64, f64) {

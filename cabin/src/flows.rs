@@ -69,6 +69,7 @@ impl HeatFlows {
     /// Net heat into each reservoir in W: heaters, interior, cabin, inside and outside of the shell; zero in steady
     /// state (eq. odes).
     #[must_use]
+    #[inline]
     pub fn net_w(&self) -> [f64; 5] {
         [
             self.radiant_heater_power_w

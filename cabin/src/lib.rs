@@ -24,6 +24,7 @@ mod window;
 
 pub use balance::{Cabin, Heaters};
 pub use clothing::clothing_insulation_clo;
+pub use comfort::Clothes;
 pub use cop::{Cop, CopError, named_cooling_cops, named_heating_cops};
 pub use design::{Design, Heating};
 pub use disturbances::{Disturbances, DisturbancesError};
