@@ -52,6 +52,8 @@ pub enum Command {
     Shade(StudyArgs),
     /// Find the optimal operation of every sample, design and comfort window that has none yet.
     Solve(SolveArgs),
+    /// Simulate every mission second by second, beside what the steady-state optima foresee.
+    Simulate(StudyArgs),
     /// Write tables and figures.
     Report(StudyArgs),
     /// All stages, only what is missing; without a study file it makes a demo and runs that.
@@ -177,4 +179,8 @@ pub struct PointArgs {
     /// Limit of the comfort window [-L, +L], or the larger limit of an unequal one.
     #[arg(long, value_name = "L")]
     pub pmv_limit: f64,
+
+    /// Write the heat flows as a diagram (SVG) to a file.
+    #[arg(long, value_name = "FILE")]
+    pub figure: Option<PathBuf>,
 }

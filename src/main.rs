@@ -66,6 +66,7 @@ fn dispatch(args: &Args, console: &Console) -> Result<Ending, Failure> {
         Command::Ingest(study) => stages::run(&open(study)?, &[Stage::Ingest], console, stop),
         Command::Shade(study) => stages::run(&open(study)?, &[Stage::Shade], console, stop),
         Command::Solve(args) => stages::run(&open(&args.study)?.solved_by(args.method), &[Stage::Solve], console, stop),
+        Command::Simulate(study) => stages::run(&open(study)?, &[Stage::Simulate], console, stop),
         Command::Report(study) => stages::run(&open(study)?, &[Stage::Report], console, stop),
         Command::Run(args) => {
             let study = if args.study.study.is_none() && !Path::new(STUDY_FILE).exists() {

@@ -15,6 +15,7 @@ const OPTIMA: &str = "SELECT * FROM optimum ORDER BY sample_id, design, pmv_limi
 fn small() -> Scratch {
     let scratch = Scratch::demo(12);
     scratch.edit("study.toml", "{ from = 0.0, to = 2.0, step = 0.125 }", "[0.0, 0.5, 1.0, 2.0]");
+    scratch.edit("study.toml", "pmv_limits = [0.0, 0.5, 1.0, 1.5, 2.0]", "pmv_limits = [1.0]");
     scratch
 }
 
@@ -55,7 +56,7 @@ fn prop_stage_by_stage_is_the_same_as_all_at_once() {
     scratch.expect(0, &["run"]);
     let report = scratch.report();
     std::fs::remove_file(scratch.path("study.db")).unwrap();
-    for stage in ["ingest", "shade", "solve", "report"] {
+    for stage in ["ingest", "shade", "solve", "simulate", "report"] {
         scratch.expect(0, &[stage]);
     }
     assert!(report == scratch.report());
@@ -211,10 +212,56 @@ fn cli_check_status_and_show_tell_what_is_there() {
     for part in ["neither", "curtain", "through open doors", "largest residual of the five balances"] {
         assert!(show.contains(part), "{part} is missing in {show}");
     }
+    let arguments = ["show", "--sample", &id, "--design", "ptc+rh", "--pmv-limit", "1", "--figure", "flows.svg"];
+    scratch.expect(0, &arguments);
+    let svg = scratch.read("flows.svg");
+    for part in ["<svg", "cabin air", "shell inside", "role=\"img\"", "</svg>"] {
+        assert!(svg.contains(part), "{part} is missing in {svg}");
+    }
     let wrong = scratch.expect(2, &["show", "--sample", &id, "--design", "hpp", "--pmv-limit", "1"]);
     assert!(wrong.stderr.contains("it has: ptc, ptc+rh, hp"), "{}", wrong.stderr);
     scratch.expect(2, &["show", "--sample", "1", "--design", "hp", "--pmv-limit", "1"]);
     scratch.expect(2, &["show", "--sample", &id, "--design", "hp", "--pmv-limit", "0.3"]);
+}
+
+#[test]
+fn prop_a_killed_simulation_is_finished_by_the_next_run() {
+    const SIMULATIONS: &str = "SELECT * FROM simulation ORDER BY mission, design, pmv_limit, controller";
+    let scratch = small();
+    for stage in ["ingest", "shade", "solve", "simulate"] {
+        scratch.expect(0, &[stage]);
+    }
+    let undisturbed = scratch.query(SIMULATIONS);
+    assert_eq!(undisturbed.len(), 12 * 5 * 4);
+    scratch.expect(0, &["report"]);
+    let report = scratch.report();
+
+    std::fs::remove_file(scratch.path("study.db")).unwrap();
+    for stage in ["ingest", "shade", "solve"] {
+        scratch.expect(0, &[stage]);
+    }
+    let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_busclimate"))
+        .current_dir(scratch.folder.path())
+        .args(["simulate", "--threads", "1", "--quiet"])
+        .stdout(std::process::Stdio::null())
+        .spawn()
+        .unwrap();
+    // Wherever it is when it dies, what it has committed is whole.
+    let count = || number(&scratch.query("SELECT count(*) FROM simulation")[0][0]);
+    for _ in 0..2000 {
+        if count() > 0.0 {
+            break;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let committed = count();
+    assert!(committed > 0.0 && committed % 20.0 == 0.0, "{committed}");
+    scratch.expect(0, &["simulate"]);
+    assert!(undisturbed == scratch.query(SIMULATIONS));
+    scratch.expect(0, &["report"]);
+    assert!(report == scratch.report());
 }
 
 #[test]

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use crate::files::{extension, label, list, open_archive};
-use crate::segments::{Adder, Clock, State, Sums};
+use crate::segments::{Adder, Clock, Sums};
 use crate::telemetry::{AMBIENT, DOOR, PASSENGERS, Row, TIME, Telemetry};
 use crate::{Content, ExcludedSegment, ExclusionReason, FileKind, FileRecord, Finding, FindingKind, IngestError};
 
@@ -92,6 +92,19 @@ pub struct MissionReading {
     pub segments: Vec<Segment>,
     /// Segments that its telemetry cannot fill.
     pub excluded: Vec<ExcludedSegment>,
+    /// How passengers and doors change, in the order of time; before the first the bus is empty and closed.
+    pub loads: Vec<Load>,
+}
+
+/// From a second of the mission on, so many passengers are on board and a door is open or not.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Load {
+    /// Second since the start of the mission.
+    pub second: u32,
+    /// Passengers on board.
+    pub passengers: f64,
+    /// Whether at least one door is open.
+    pub door_open: bool,
 }
 
 /// Finds missions in a folder, a glob, one file or a `.zip`, relative to `base`. No `buses` means all of them.
@@ -240,6 +253,7 @@ pub fn read(source: &MissionSource, content: &Content, options: &MissionOptions)
         file: FileRecord::refused(&source.path, FileKind::Mission, &content.blake3, bytes, finding),
         segments: Vec::new(),
         excluded: Vec::new(),
+        loads: Vec::new(),
     };
     let telemetry = match Telemetry::read(&content.bytes) {
         Ok(telemetry) => telemetry,
@@ -252,7 +266,7 @@ pub fn read(source: &MissionSource, content: &Content, options: &MissionOptions)
     };
     let mut reader = Reader::new(clock);
     telemetry.for_each(|i, row| reader.take(i, row));
-    let Reader { adder, notes, span, .. } = reader;
+    let Reader { adder, notes, span, loads, .. } = reader;
     let Some((first_s, last_s)) = span else {
         let (start, end) = (source.start, source.end);
         let message = format!("no row lies between {start} and {end}, as the file's name says; check name and {TIME}");
@@ -281,7 +295,7 @@ pub fn read(source: &MissionSource, content: &Content, options: &MissionOptions)
         accepted: true,
         findings,
     };
-    MissionReading { file, segments, excluded }
+    MissionReading { file, segments, excluded, loads }
 }
 
 fn segments(
@@ -366,11 +380,12 @@ struct Reader {
     notes: Notes,
     /// First and last second that has a row.
     span: Option<(i64, i64)>,
+    loads: Vec<Load>,
 }
 
 impl Reader {
     fn new(clock: Clock) -> Self {
-        Self { clock, adder: Adder::new(clock), notes: Notes::default(), span: None }
+        Self { clock, adder: Adder::new(clock), notes: Notes::default(), span: None, loads: Vec::new() }
     }
 
     fn take(&mut self, i: usize, row: Row) {
@@ -412,7 +427,11 @@ impl Reader {
             Some(_) => {}
             None => notes.unreadable_ambient.at(i),
         }
-        self.adder.add(i, time_s, State { ..state });
+        if state != self.adder.state() {
+            let second = (time_s - self.clock.start_s) as u32;
+            self.loads.push(Load { second, passengers: state.passengers, door_open: state.door_open });
+        }
+        self.adder.add(i, time_s, state);
         self.span = Some((self.span.map_or(time_s, |(first, _)| first), time_s));
     }
 }

@@ -378,4 +378,33 @@ impl Weather {
         let [temperature, dni, dhi, _] = sums.map(|s| s / (to - from) as f64);
         Ok(WeatherMean { ambient_temperature_k: temperature, dni_w_m2: dni, dhi_w_m2: dhi, interpolated_s: sums[3] })
     }
+
+    /// Weather at an instant: linear between the middles of the intervals; beyond the first and the last middle, and beside
+    /// a gap, that of the interval itself.
+    ///
+    /// # Errors
+    /// Why there is none.
+    pub fn at(&self, instant: DateTime<Utc>) -> Result<WeatherMean, ExclusionReason> {
+        let second = instant.timestamp();
+        let slot_at = |s: i64| self.calendar.slot(s, self.interval_s, self.temperature_k.len());
+        let here = slot_at(second).ok_or(ExclusionReason::OutsideWeather)?;
+        let into_s = (second - self.calendar.start(0, self.interval_s)).rem_euclid(self.interval_s);
+        let from_middle = into_s as f64 / self.interval_s as f64 - 0.5;
+        let beside =
+            slot_at(second + if from_middle < 0.0 { -self.interval_s } else { self.interval_s }).unwrap_or(here);
+        let value = |values: &[f64]| {
+            let (a, b) = (values[here], values[beside]);
+            if b.is_nan() { a } else { a + (b - a) * from_middle.abs() }
+        };
+        let found = WeatherMean {
+            ambient_temperature_k: value(&self.temperature_k),
+            dni_w_m2: value(&self.dni_w_m2),
+            dhi_w_m2: value(&self.dhi_w_m2),
+            interpolated_s: 0.0,
+        };
+        if [found.ambient_temperature_k, found.dni_w_m2, found.dhi_w_m2].iter().any(|v| v.is_nan()) {
+            return Err(ExclusionReason::WeatherGap { max_gap_s: self.max_gap_s });
+        }
+        Ok(found)
+    }
 }

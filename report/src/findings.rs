@@ -1,6 +1,7 @@
 //! What the paper finds, beside what this study finds.
 
 use crate::StudyReport;
+use crate::numbers::signed;
 
 /// Whether a study agrees with the paper.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -77,7 +78,7 @@ fn change(
     PaperFinding {
         claim,
         paper,
-        ours: format!("{} … {} % over all windows", signed(most), signed(least)),
+        ours: format!("{} … {} % over all windows", signed(most, 1), signed(least, 1)),
         verdict: if agrees { Verdict::Within } else { Verdict::Outside },
     }
 }
@@ -118,13 +119,4 @@ fn neutral_power(study: &StudyReport) -> PaperFinding {
 
 fn not_covered(claim: &'static str, paper: &'static str) -> PaperFinding {
     PaperFinding { claim, paper, ours: "–".to_owned(), verdict: Verdict::NotCovered }
-}
-
-fn signed(percent: f64) -> String {
-    let text = format!("{:.1}", percent.abs());
-    match (text == "0.0", percent < 0.0) {
-        (true, _) => "0.0".to_owned(),
-        (false, true) => format!("−{text}"),
-        (false, false) => format!("+{text}"),
-    }
 }

@@ -6,15 +6,19 @@
 mod figure;
 mod findings;
 mod headline;
+mod heat_flow;
 mod markdown;
 mod numbers;
+mod simulation;
 mod tables;
 
 pub use findings::{PaperFinding, Verdict, paper_findings};
 pub use headline::headline;
+pub use heat_flow::{HeatFlowFigure, heat_flow_svg};
 
 use store::{
-    AnnualRow, DesignRow, ExclusionCount, LimitShare, MonthRow, MonthlyRow, StatusCounts, StoredFile, StoredFinding,
+    AnnualRow, DesignRow, ExclusionCount, LimitShare, MonthRow, MonthlyRow, SimulatedClass, SimulatedYear,
+    StatusCounts, StoredFile, StoredFinding,
 };
 
 /// Everything that a report says, in the order of the study.
@@ -50,6 +54,10 @@ pub struct StudyReport {
     pub exclusions: Vec<ExclusionCount>,
     /// What the numbers rest on.
     pub assumptions: Vec<Assumption>,
+    /// Annual means of the simulated missions, by design, window and controller; empty where nothing is simulated.
+    pub simulated_years: Vec<SimulatedYear>,
+    /// The simulated missions by month, temperature and length.
+    pub simulated_classes: Vec<SimulatedClass>,
 }
 
 /// Something that the numbers rest on.
@@ -92,7 +100,7 @@ pub enum ReportError {
 pub fn render(study: &StudyReport) -> Result<Vec<ReportFile>, ReportError> {
     let findings = paper_findings(study);
     let file = |name, bytes| ReportFile { name, bytes };
-    Ok(vec![
+    let mut files = vec![
         file("report.md", markdown::render(study, &findings)?.into_bytes()),
         file("annual_average.csv", tables::annual_average(study)?),
         file("monthly_average.csv", tables::monthly_average(study)?),
@@ -100,7 +108,12 @@ pub fn render(study: &StudyReport) -> Result<Vec<ReportFile>, ReportError> {
         file("sources.csv", tables::sources(study)?),
         file("data_quality.csv", tables::data_quality(study)?),
         file("pareto.svg", figure::pareto(study).into_bytes()),
-    ])
+    ];
+    if !study.simulated_years.is_empty() {
+        files.push(file("simulation_annual.csv", simulation::annual_csv(study)?));
+        files.push(file("simulation_classes.csv", simulation::classes_csv(study)?));
+    }
+    Ok(files)
 }
 
 impl StudyReport {

@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 
 use crate::headline::{answer, shown_window};
 use crate::numbers::{month, percent, watts, window};
-use crate::{PaperFinding, ReportError, StudyReport};
+use crate::{PaperFinding, ReportError, StudyReport, simulation};
 
 const TEMPLATE: &str = include_str!("../templates/report.md");
 /// Findings that the report lists one by one; all of them are in data_quality.csv.
@@ -117,6 +117,7 @@ fn content(study: &StudyReport, findings: &[PaperFinding]) -> Value {
         .collect();
     let points = study.status.solved + study.status.infeasible + study.status.not_converged;
     let missing = study.missing_months();
+    let (simulated_design, classes) = simulation::class_rows(study);
     context! {
         name => &study.name, note => &study.note, version => &study.program_version,
         study_hash => &study.study_hash, input_hash => &study.input_hash,
@@ -126,6 +127,7 @@ fn content(study: &StudyReport, findings: &[PaperFinding]) -> Value {
         samples => study.months.iter().map(|m| m.sample_count).sum::<u64>(), points,
         solved => study.status.solved, infeasible => study.status.infeasible, lost => study.status.not_converged,
         unequal => windows.iter().filter(|w| w.0 != -w.1).count(),
+        simulated => simulation::annual_rows(study), simulated_design, classes,
         power, reduction, has_reference, parts, monthly, shares, kinds, quality,
         more_findings => study.findings.len().saturating_sub(LISTED),
         paper => findings.iter().map(|f| context! {

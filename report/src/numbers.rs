@@ -22,6 +22,16 @@ pub(crate) fn percent(share: Option<f64>) -> String {
     share.map_or_else(|| "–".to_owned(), |s| format!("{:.1} %", 100.0 * s + 0.0))
 }
 
+/// With a sign and so many decimals; nothing has no sign.
+pub(crate) fn signed(value: f64, decimals: usize) -> String {
+    let text = format!("{:.decimals$}", value.abs());
+    match (text.chars().all(|c| matches!(c, '0' | '.')), value < 0.0) {
+        (true, _) => text,
+        (false, true) => format!("−{text}"),
+        (false, false) => format!("+{text}"),
+    }
+}
+
 /// A name of a month.
 pub(crate) fn month(month: u8) -> &'static str {
     const NAMES: [&str; 12] = [

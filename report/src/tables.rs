@@ -92,7 +92,7 @@ pub(crate) fn data_quality(study: &StudyReport) -> Result<Vec<u8>, ReportError> 
     })
 }
 
-fn table<T>(
+pub(crate) fn table<T>(
     header: &[&str],
     rows: impl Iterator<Item = T>,
     cells: impl Fn(T) -> Vec<String>,
@@ -105,12 +105,12 @@ fn table<T>(
     Ok(writer.into_inner().map_err(|e| csv::Error::from(e.into_error()))?)
 }
 
-fn optional(value: Option<f64>) -> String {
+pub(crate) fn optional(value: Option<f64>) -> String {
     value.map(|v| v.to_string()).unwrap_or_default()
 }
 
 /// Text from outside: a spreadsheet must not take it for a formula.
-fn text(cell: &str) -> String {
+pub(crate) fn text(cell: &str) -> String {
     let formula = cell.starts_with(['=', '+', '-', '@', '\t', '\r']);
     if formula { Cow::Owned(format!("'{cell}")) } else { Cow::Borrowed(cell) }.into_owned()
 }

@@ -230,6 +230,83 @@ fn prop_a_shorter_step_changes_less_than_a_millikelvin_and_a_tenth_of_a_watt() {
     }
 }
 
+/// The equations once more, for a library that integrates them to a tight tolerance.
+struct Equations<'a> {
+    cabin: Cabin<'a>,
+    design: &'a Design,
+    dynamics: Dynamics,
+    commands: Commands,
+}
+
+impl ode_solvers::System<f64, ode_solvers::Vector6<f64>> for Equations<'_> {
+    fn system(&self, _: f64, y: &ode_solvers::Vector6<f64>, dy: &mut ode_solvers::Vector6<f64>) {
+        let t = Temperatures {
+            radiant_heater_k: y[0],
+            interior_k: y[1],
+            cabin_k: y[2],
+            shell_inside_k: y[3],
+            shell_outside_k: y[4],
+        };
+        let (c, d) = (&self.commands, &self.dynamics);
+        let net_w = self.cabin.flows(&t, c.air_curtain_on, y[5], c.radiant_heater_power_w).net_w();
+        let capacities = [
+            d.radiant_heater_capacity_j_k,
+            d.interior_capacity_j_k,
+            d.cabin_capacity_j_k,
+            d.shell_inside_capacity_j_k,
+            d.shell_outside_capacity_j_k,
+        ];
+        for i in 0..5 {
+            dy[i] = net_w[i] / capacities[i];
+        }
+        let cop = self.design.heating_cop.at(y[2] - self.cabin.ambient_k());
+        dy[5] = (cop * c.air_unit_power_w - y[5]) / d.air_unit_time_constant_s;
+    }
+}
+
+#[test]
+fn xval_ode_solvers_the_step_of_a_second_is_short_enough() {
+    let vehicle = Vehicle::default();
+    let views = PassengerViews::new(&vehicle);
+    let dynamics = Dynamics::default();
+    let design = design("hp+curtain", Heating::HeatPump, false, true);
+    let weather = Cabin::new(&vehicle, &views, &day(-8.0, 0.0, 0.0, 0.0));
+    let t = weather.rough_state(kelvin(6.0)).temperatures;
+    let mut ours = BusState { temperatures: t, air_unit_heat_w: 0.0 };
+    let mut theirs = ode_solvers::Vector6::new(
+        t.radiant_heater_k,
+        t.interior_k,
+        t.cabin_k,
+        t.shell_inside_k,
+        t.shell_outside_k,
+        0.0,
+    );
+    let (mut largest_k, mut mean_off_w) = (0.0_f64, 0.0);
+    let seconds = 3600_u32;
+    for second in 0..seconds {
+        let commands = Commands {
+            air_unit_power_w: if second / 37 % 2 == 0 { 12_000.0 } else { 500.0 },
+            radiant_heater_power_w: if second / 91 % 2 == 0 { 4_000.0 } else { 0.0 },
+            air_curtain_on: second / 600 % 2 == 0,
+        };
+        let cabin = weather.with_load(f64::from(second / 80 % 60), if second % 80 < 20 { 0.6 } else { 0.0 });
+        ours = step(&cabin, &design, &dynamics, &ours, &commands, 1.0);
+        let equations = Equations { cabin, design: &design, dynamics, commands };
+        let mut solver = ode_solvers::Dopri5::new(equations, 0.0, 1.0, 1.0, theirs, 1e-11, 1e-11);
+        solver.integrate().expect("the equations are smooth within a second");
+        theirs = *solver.y_out().last().expect("the end of the second");
+        let o = ours.temperatures;
+        for (a, b) in
+            [o.radiant_heater_k, o.interior_k, o.cabin_k, o.shell_inside_k, o.shell_outside_k].iter().zip(&theirs)
+        {
+            largest_k = largest_k.max((a - b).abs());
+        }
+        mean_off_w += (ours.air_unit_heat_w - theirs[5]) / f64::from(seconds);
+    }
+    assert!(largest_k < 1e-3, "{largest_k} K");
+    assert!(mean_off_w.abs() < 0.1, "{mean_off_w} W");
+}
+
 fn winter_mission(ambient_c: f64, limit: f64, hours: usize, conduct: Conduct) -> (Summary, Vec<Instant>, Operation) {
     let vehicle = Vehicle::default();
     let views = PassengerViews::new(&vehicle);

@@ -4,7 +4,7 @@ use ingest::mission::{self, MissionSource};
 use ingest::weather::{self, Weather};
 use ingest::{FileKind, FileRecord, Finding, FindingKind};
 use std::collections::BTreeMap;
-use store::{FileRow, FindingRow, SegmentRow, Store};
+use store::{FileRow, FindingRow, LoadRow, SegmentRow, Store};
 
 use crate::console::{Console, Stop};
 use crate::failure::Failure;
@@ -33,13 +33,18 @@ fn missions(study: &Study, store: &mut Store, console: &Console, stop: Stop) -> 
     let read = |buffer: &mut Vec<u8>, source: &&MissionSource| {
         let content = match source.load(std::mem::take(buffer)) {
             Ok(content) => content,
-            Err(record) => return (String::new(), source.path.clone(), Some((refused_row(record), Vec::new()))),
+            Err(record) => {
+                return (String::new(), source.path.clone(), Some((refused_row(record), Vec::new(), Vec::new())));
+            }
         };
         let key = study.reading_key(&content.blake3, &settings);
         let reading = (known.get(&source.path) != Some(&key)).then(|| {
             let reading = mission::read(source, &content, options);
             let segments = segment_rows(source.bus, &reading);
-            (file_row(reading.file, key), segments)
+            let load =
+                |l: &mission::Load| LoadRow { second: l.second, passengers: l.passengers, door_open: l.door_open };
+            let loads: Vec<LoadRow> = reading.loads.iter().map(load).collect();
+            (file_row(reading.file, key), segments, loads)
         });
         let blake3 = content.blake3.clone();
         *buffer = content.bytes;
@@ -58,8 +63,8 @@ fn missions(study: &Study, store: &mut Store, console: &Console, stop: Stop) -> 
             store.put_file(&refused_row(record), &[])?;
         } else {
             contents.insert(blake3, path);
-            if let Some((file, segments)) = reading {
-                store.put_file(&file, &segments)?;
+            if let Some((file, segments, loads)) = reading {
+                store.put_mission(&file, &segments, &loads)?;
                 read_now += 1;
             }
         }

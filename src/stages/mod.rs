@@ -1,4 +1,4 @@
-//! The work in its order: missions and weather → samples → optima → report.
+//! The work in its order: missions and weather → samples → optima → simulations → report.
 
 mod assumptions;
 mod check;
@@ -6,6 +6,7 @@ mod ingest;
 mod report;
 mod shade;
 mod show;
+mod simulate;
 mod solve;
 mod status;
 mod verify;
@@ -30,11 +31,12 @@ pub enum Stage {
     Ingest,
     Shade,
     Solve,
+    Simulate,
     Report,
 }
 
 impl Stage {
-    pub const ALL: [Self; 4] = [Self::Ingest, Self::Shade, Self::Solve, Self::Report];
+    pub const ALL: [Self; 5] = [Self::Ingest, Self::Shade, Self::Solve, Self::Simulate, Self::Report];
 }
 
 /// Runs stages and records the run.
@@ -50,6 +52,7 @@ pub fn run(study: &Study, stages: &[Stage], console: &Console, stop: Stop) -> Re
         Stage::Ingest => ingest::ingest(study, &mut store, console, stop),
         Stage::Shade => shade::shade(study, &mut store, console),
         Stage::Solve => solve::solve(study, &mut store, console, stop),
+        Stage::Simulate => simulate::simulate(study, &mut store, console, stop),
         Stage::Report => report::report(study, &mut store).map(|lines| found = lines),
     });
     let summary = Summary::of(study, &mut store)?;

@@ -28,6 +28,8 @@ pub fn report(study: &Study, store: &mut Store) -> Result<Vec<String>, Failure> 
         findings: store.findings()?,
         exclusions: store.exclusion_counts()?,
         assumptions: assumptions(study),
+        simulated_years: store.simulated_years()?,
+        simulated_classes: store.simulated_classes()?,
     };
     let files = report::render(&content).map_err(|e| Failure::Inputs(e.into()))?;
     std::fs::create_dir_all(&study.report_dir)

@@ -2,9 +2,12 @@
 
 use anyhow::anyhow;
 use cabin::{Cabin, PassengerViews, celsius};
+use report::{HeatFlowFigure, heat_flow_svg};
 use solve::{Operation, SampleSolver};
+use std::path::Path;
 use store::Store;
 
+use super::report::write_beside;
 use super::shade::disturbances;
 use crate::args::PointArgs;
 use crate::console::say;
@@ -102,7 +105,13 @@ pub fn show(study: &Study, point: &PointArgs) -> Result<Ending, Failure> {
         }
     }
     match best {
-        Some(operation) => flows(study, &views, &sample, &operation)?,
+        Some(operation) => {
+            flows(study, &views, &sample, &operation)?;
+            if let Some(path) = &point.figure {
+                let title = format!("{} at PMV {} … {}", point.design, comfort.pmv_min(), comfort.pmv_max());
+                figure(study, &views, &sample, &operation, title, path)?;
+            }
+        }
         None => say(format_args!("\nno operation of this design meets the window"))?,
     }
     Ok(Ending::Done)
@@ -134,4 +143,36 @@ fn flows(
     }
     let residual = flows.net_w().into_iter().map(f64::abs).fold(0.0, f64::max);
     say(format_args!("largest residual of the five balances: {residual:.1e} W"))
+}
+
+/// The same as a diagram.
+fn figure(
+    study: &Study,
+    views: &PassengerViews,
+    sample: &store::SampleRow,
+    operation: &Operation,
+    title: String,
+    path: &Path,
+) -> Result<(), Failure> {
+    let o = operation;
+    let cabin = Cabin::new(&study.vehicle, views, &disturbances(sample));
+    let content = HeatFlowFigure {
+        title: format!("Heat flows, {title}"),
+        description: format!(
+            "Sample {} ({}): {:.0} W HVAC power, {:.1} passengers, {:.1} % of the doors open, PMV {:.2}",
+            sample.sample_id,
+            sample.start_utc,
+            o.hvac_power_w(),
+            sample.passengers,
+            100.0 * sample.door_open_fraction,
+            o.pmv
+        ),
+        ambient_k: sample.ambient_temperature_k,
+        temperatures: o.temperatures,
+        flows: cabin.flows(&o.temperatures, o.air_curtain_on, o.air_unit_heat_w, o.radiant_heater_power_w),
+        air_unit_power_w: o.air_unit_power_w,
+    };
+    let svg = heat_flow_svg(&content).map_err(|e| Failure::Inputs(e.into()))?;
+    write_beside(path, svg.as_bytes()).map_err(Failure::Inputs)?;
+    say(format_args!("\nfigure: {}", path.display()))
 }

@@ -5,6 +5,7 @@ use cabin::Vehicle;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{Error as _, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
+use simulate::Dynamics;
 use std::fmt;
 use std::marker::PhantomData;
 use std::path::Path;
@@ -31,6 +32,10 @@ pub struct StudyFile {
     pub comfort: Comfort,
     #[serde(default)]
     pub vehicle: Vehicle,
+    #[serde(default)]
+    pub simulation: Simulation,
+    #[serde(default)]
+    pub dynamics: Dynamics,
     #[serde(default = "default_designs", deserialize_with = "in_file_order")]
     pub designs: Vec<(String, Design)>,
 }
@@ -77,6 +82,20 @@ pub struct Weather {
     pub ghi_column: Option<String>,
     pub dhi_column: Option<String>,
     pub dni_column: Option<String>,
+}
+
+/// Which of the study's windows are simulated.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Simulation {
+    pub pmv_limits: Vec<f64>,
+}
+
+impl Default for Simulation {
+    /// The five levels of the paper's validation.
+    fn default() -> Self {
+        Self { pmv_limits: vec![0.0, 0.5, 1.0, 1.5, 2.0] }
+    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]

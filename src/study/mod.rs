@@ -8,6 +8,7 @@ use chrono_tz::Tz;
 use ingest::mission::MissionOptions;
 use ingest::weather::{ColumnMap, IrradianceSplit, TimeLabel, WeatherFormat, WeatherOptions};
 use shading::Site;
+use simulate::Dynamics;
 use solve::nlp::{NLP_VERSION, SURROGATE_VERSION};
 use solve::{Grid, METHOD_VERSION, certify};
 use std::path::{Path, PathBuf};
@@ -17,7 +18,7 @@ use crate::args::Method;
 use file::{StudyFile, StudyFileError};
 
 /// Version of the readers: it changes whenever a file would be read differently.
-pub const READER_VERSION: u32 = 1;
+pub const READER_VERSION: u32 = 2;
 /// More limits than this are a slip of the step.
 const MOST_LIMITS: f64 = 1000.0;
 
@@ -38,6 +39,9 @@ pub struct Study {
     pub weather: WeatherOptions,
     pub shadow_path: String,
     pub vehicle: Vehicle,
+    pub dynamics: Dynamics,
+    /// Indices of the windows in the grid that are simulated.
+    pub simulated_windows: Vec<usize>,
     pub grid: Grid,
     /// The grid's designs and windows as the database keeps them.
     pub design_rows: Vec<DesignRow>,
@@ -82,6 +86,10 @@ impl Study {
         file.vehicle.check().map_err(|e| format!("[vehicle] {e}"))?;
         certify(&file.vehicle, grid.designs()).map_err(|e| e.to_string())?;
 
+        file.dynamics.check().map_err(|e| format!("[dynamics] {e}"))?;
+        let simulated = |w: &ComfortWindow| file.simulation.pmv_limits.contains(&w.pmv_limit());
+        let simulated_windows = (0..grid.windows().len()).filter(|&i| simulated(&grid.windows()[i])).collect();
+
         let window_rows = grid
             .windows()
             .iter()
@@ -102,6 +110,8 @@ impl Study {
             weather,
             shadow_path: file.shadow.path.clone(),
             vehicle: file.vehicle.clone(),
+            dynamics: file.dynamics,
+            simulated_windows,
             grid,
             design_rows,
             window_rows,

@@ -1,6 +1,7 @@
 //! Study files to start from.
 
 use cabin::Vehicle;
+use simulate::Dynamics;
 
 /// The parts of a study file that differ between a new study and the demo's.
 pub struct Template<'a> {
@@ -42,7 +43,8 @@ pub fn render(template: &Template) -> String {
         None => "# note = \"shown at the top of the report\"\n".to_owned(),
     };
     let vehicle = toml::to_string(&Vehicle::default()).expect("a flat struct of numbers becomes TOML");
-    let vehicle: String = vehicle.lines().map(|line| format!("# {line}\n")).collect();
+    let commented = |text: String| text.lines().map(|line| format!("# {line}\n")).collect::<String>();
+    let dynamics = toml::to_string(&Dynamics::default()).expect("a flat struct of numbers becomes TOML");
     let [format, map] = template.weather.lines();
     include_str!("template.toml")
         .replace("@FORMAT@", format)
@@ -50,7 +52,8 @@ pub fn render(template: &Template) -> String {
         .replace("@NAME@", &quoted(template.name))
         .replace("@NOTE@", &note)
         .replace("@BUSES@", &format!("{:?}", template.buses))
-        .replace("@VEHICLE@", &vehicle)
+        .replace("@VEHICLE@", &commented(vehicle))
+        .replace("@DYNAMICS@", &commented(dynamics))
 }
 
 fn quoted(text: &str) -> String {

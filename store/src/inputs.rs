@@ -4,6 +4,7 @@ use sqlx::sqlite::SqliteConnection;
 use sqlx::{Connection, Row};
 use std::collections::BTreeMap;
 
+use crate::simulations::{LoadRow, encode_loads};
 use crate::{ExclusionRow, FileRow, SampleRow, SegmentRow, Store, StoreError};
 
 /// A file that the database holds.
@@ -38,6 +39,19 @@ impl Store {
     /// # Errors
     /// [`StoreError::Statement`].
     pub fn put_file(&mut self, file: &FileRow, segments: &[SegmentRow]) -> Result<(), StoreError> {
+        self.put_mission(file, segments, &[])
+    }
+
+    /// As [`Store::put_file`], with what passengers and doors of the mission do in time.
+    ///
+    /// # Errors
+    /// [`StoreError::Statement`].
+    pub fn put_mission(
+        &mut self,
+        file: &FileRow,
+        segments: &[SegmentRow],
+        loads: &[LoadRow],
+    ) -> Result<(), StoreError> {
         self.drive(async |c| {
             let mut tx = c.begin().await?;
             let same = sqlx::query("SELECT source_file_id FROM source_file WHERE path = ? AND reading_key = ?")
@@ -52,6 +66,13 @@ impl Store {
             sqlx::query("DELETE FROM mission_segment WHERE source_file_id = ?").bind(id).execute(&mut *tx).await?;
             for segment in segments {
                 insert_segment(&mut tx, id, segment).await?;
+            }
+            if !loads.is_empty() {
+                sqlx::query("INSERT OR REPLACE INTO mission_load VALUES (?, ?)")
+                    .bind(id)
+                    .bind(encode_loads(loads))
+                    .execute(&mut *tx)
+                    .await?;
             }
             Ok(tx.commit().await?)
         })

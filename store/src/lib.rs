@@ -9,6 +9,7 @@ mod inputs;
 mod optima;
 mod rows;
 mod runs;
+mod simulations;
 mod study;
 mod verification;
 mod views;
@@ -20,6 +21,7 @@ pub use rows::{
     DesignRow, ExclusionRow, FileRow, FindingRow, SampleRow, SegmentRow, StoredExclusion, StoredFinding, WindowRow,
 };
 pub use runs::{Counts, RunEnd, RunRow};
+pub use simulations::{LoadRow, SimulatedClass, SimulatedYear, SimulationId, SimulationRow};
 pub use study::{StoredStudy, StudyChange};
 pub use verification::{CheckRow, VerificationRow};
 pub use views::{
