@@ -63,7 +63,7 @@ pub fn heat_flow_svg(figure: &HeatFlowFigure) -> Result<String, ReportError> {
     let kw = |w: f64| format!("{:.2} kW", w / 1e3);
     let shape = |p: Place, name: &str, value: String, fill: &str| {
         let (cx, _) = p.at(0.0, 0.0);
-        let cy = p.y + 0.5 * p.h - 4.0;
+        let cy = p.y + 0.5 * p.h + if value.is_empty() { 5.0 } else { -4.0 };
         context! { x => p.x, y => p.y, w => p.w, h => p.h, cx, cy, name, value, fill }
     };
     let boxes = vec![
@@ -80,8 +80,8 @@ pub fn heat_flow_svg(figure: &HeatFlowFigure) -> Result<String, ReportError> {
         shape(SUN, "sun", kw(f.solar.interior_w + f.solar.shell_inside_w + f.solar.shell_outside_w), "#fbf3c4"),
         shape(GRID, "heater power", kw(f.radiant_heater_power_w), "#f3ecd9"),
     ];
-    let solid = |w, from, to| arrow(w, from, to, "");
-    let radiation = |w, from, to| arrow(w, from, to, "8 4");
+    let solid = |w, from, to| arrow(w, from, to, "", MIDDLE);
+    let radiation = |w, from, to| arrow(w, from, to, "8 4", MIDDLE);
     let arrows: Vec<Value> = vec![
         solid(f.convection_shell_outside_w, OUTSIDE.at(-1.0, -0.5), AMBIENT.at(1.0, -0.5)),
         radiation(f.radiation_shell_outside_w, OUTSIDE.at(-1.0, 0.5), AMBIENT.at(1.0, 0.5)),
@@ -91,7 +91,8 @@ pub fn heat_flow_svg(figure: &HeatFlowFigure) -> Result<String, ReportError> {
         radiation(f.radiation_interior_shell_w, INTERIOR.at(-0.7, -1.0), INSIDE.at(0.4, 1.0)),
         solid(f.convection_radiant_heater_w, HEATERS.at(0.6, 1.0), CABIN.at(-0.4, -1.0)),
         radiation(f.radiation_heater_shell_w, HEATERS.at(-0.7, 1.0), INSIDE.at(0.4, -1.0)),
-        radiation(f.radiation_heater_interior_w, HEATERS.at(0.0, 1.0), INTERIOR.at(0.0, -1.0)),
+        // Its middle lies on the arrow from cabin to shell.
+        arrow(f.radiation_heater_interior_w, HEATERS.at(0.0, 1.0), INTERIOR.at(0.0, -1.0), "8 4", 0.17),
         solid(f.air_unit_w, AIR_UNIT.at(-0.6, 1.0), CABIN.at(0.7, -1.0)),
         solid(f.passengers_w, PASSENGERS.at(-1.0, 0.0), CABIN.at(1.0, -0.5)),
         solid(f.other_w, OTHER.at(-1.0, 0.0), CABIN.at(1.0, 0.5)),
@@ -99,7 +100,7 @@ pub fn heat_flow_svg(figure: &HeatFlowFigure) -> Result<String, ReportError> {
         radiation(f.solar.shell_outside_w, SUN.at(0.0, -1.0), OUTSIDE.at(0.0, 1.0)),
         radiation(f.solar.shell_inside_w, SUN.at(0.8, -1.0), INSIDE.at(-0.6, 1.0)),
         radiation(f.solar.interior_w, SUN.at(1.0, 0.0), INTERIOR.at(-1.0, 0.0)),
-        arrow(f.radiant_heater_power_w, GRID.at(1.0, 0.0), HEATERS.at(-1.0, 0.0), "2 4"),
+        arrow(f.radiant_heater_power_w, GRID.at(1.0, 0.0), HEATERS.at(-1.0, 0.0), "2 4", MIDDLE),
     ]
     .into_iter()
     .flatten()
@@ -111,8 +112,12 @@ pub fn heat_flow_svg(figure: &HeatFlowFigure) -> Result<String, ReportError> {
     Ok(environment.get_template("heat_flow.svg")?.render(content)?)
 }
 
-/// An arrow in the direction in which the heat flows; none for less than half a hundredth of a kilowatt.
-fn arrow(watt: f64, from: (f64, f64), to: (f64, f64), dash: &str) -> Option<Value> {
+/// Where labels stand along their arrows.
+const MIDDLE: f64 = 0.45;
+
+/// An arrow in the direction in which the heat flows; none for less than half a hundredth of a kilowatt. Its label stands
+/// at a share of the way.
+fn arrow(watt: f64, from: (f64, f64), to: (f64, f64), dash: &str, share: f64) -> Option<Value> {
     let kw = watt / 1e3;
     if kw.abs() < 0.005 {
         return None;
@@ -120,8 +125,6 @@ fn arrow(watt: f64, from: (f64, f64), to: (f64, f64), dash: &str) -> Option<Valu
     let ((x1, y1), (x2, y2)) = if kw < 0.0 { (to, from) } else { (from, to) };
     let round = |v: f64| format!("{v:.1}");
     let colour = "#333";
-    // Labels of neighbouring arrows that run alongside stand at different heights.
-    let share = 0.45;
     Some(context! {
         x1 => round(x1), y1 => round(y1), x2 => round(x2), y2 => round(y2), colour, dash,
         width => format!("{:.2}", 1.0 + 0.45 * kw.abs().min(12.0)),

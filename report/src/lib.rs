@@ -8,13 +8,16 @@ mod findings;
 mod headline;
 mod heat_flow;
 mod markdown;
+mod mission_figure;
 mod numbers;
 mod simulation;
 mod tables;
 
+pub use figure::{ParetoPoint, simulated_pareto_svg};
 pub use findings::{PaperFinding, Verdict, paper_findings};
 pub use headline::headline;
 pub use heat_flow::{HeatFlowFigure, heat_flow_svg};
+pub use mission_figure::{Curve, MissionFigure, Panel, mission_svg};
 
 use store::{
     AnnualRow, DesignRow, ExclusionCount, LimitShare, MonthRow, MonthlyRow, SimulatedClass, SimulatedYear,
@@ -58,6 +61,10 @@ pub struct StudyReport {
     pub simulated_years: Vec<SimulatedYear>,
     /// The simulated missions by month, temperature and length.
     pub simulated_classes: Vec<SimulatedClass>,
+    /// Two missions in time, and their powers in steady state and simulated; none where nothing is simulated.
+    pub mission_figures: Vec<MissionFigure>,
+    /// Points of the comparison of both ways.
+    pub pareto_points: Vec<ParetoPoint>,
 }
 
 /// Something that the numbers rest on.
@@ -93,6 +100,9 @@ pub enum ReportError {
     Table(#[from] csv::Error),
 }
 
+/// Names of the files of [`StudyReport::mission_figures`].
+const MISSION_FILES: [&str; 2] = ["mission_cold.svg", "mission_hot.svg"];
+
 /// All files of the report.
 ///
 /// # Errors
@@ -112,6 +122,12 @@ pub fn render(study: &StudyReport) -> Result<Vec<ReportFile>, ReportError> {
     if !study.simulated_years.is_empty() {
         files.push(file("simulation_annual.csv", simulation::annual_csv(study)?));
         files.push(file("simulation_classes.csv", simulation::classes_csv(study)?));
+    }
+    for (figure, name) in study.mission_figures.iter().zip(MISSION_FILES) {
+        files.push(file(name, mission_svg(figure)?.into_bytes()));
+    }
+    if !study.pareto_points.is_empty() {
+        files.push(file("simulated_pareto.svg", simulated_pareto_svg(&study.pareto_points).into_bytes()));
     }
     Ok(files)
 }

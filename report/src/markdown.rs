@@ -128,6 +128,7 @@ fn content(study: &StudyReport, findings: &[PaperFinding]) -> Value {
         solved => study.status.solved, infeasible => study.status.infeasible, lost => study.status.not_converged,
         unequal => windows.iter().filter(|w| w.0 != -w.1).count(),
         simulated => simulation::annual_rows(study), simulated_design, classes,
+        mission_figures => study.mission_figures.len() == 2,
         power, reduction, has_reference, parts, monthly, shares, kinds, quality,
         more_findings => study.findings.len().saturating_sub(LISTED),
         paper => findings.iter().map(|f| context! {

@@ -220,3 +220,40 @@ fn prop_the_figure_is_xml_with_a_mark_for_every_point() {
     }
     roxmltree::Document::parse(&file(&study(&[]), "pareto.svg")).unwrap();
 }
+
+#[test]
+fn prop_figures_of_missions_are_xml_and_keep_their_panels_apart() {
+    let wave =
+        |height: f64| (0..120).map(|i| (6.0 + f64::from(i) / 60.0, height * f64::from(i % 7))).collect::<Vec<_>>();
+    let curve = |name: &str, height| report::Curve {
+        name: name.to_owned(),
+        colour: "#0072b2",
+        dash: "",
+        width: 1.0,
+        points: wave(height),
+    };
+    let panel = |label: &str, height| report::Panel {
+        label: label.to_owned(),
+        curves: vec![curve("<a>", height), curve("", 0.0)],
+    };
+    let figure = report::MissionFigure {
+        title: "A & B".to_owned(),
+        caption: "c".to_owned(),
+        hours: [6.0, 8.0],
+        axis: "h".to_owned(),
+        panels: vec![
+            panel("T", 1.0),
+            panel("P", -300.0),
+            report::Panel { label: "none".to_owned(), curves: Vec::new() },
+        ],
+    };
+    let svg = report::mission_svg(&figure).unwrap();
+    assert_eq!(svg, report::mission_svg(&figure).unwrap());
+    let document = roxmltree::Document::parse(&svg).unwrap();
+    let labels: Vec<&str> =
+        document.descendants().filter(|n| n.has_tag_name("text")).filter_map(|n| n.text()).collect();
+    for label in ["A & B", "<a>", "T", "P", "none", "6", "7", "8", "−2000"] {
+        assert!(labels.contains(&label), "{label} is missing in {labels:?}");
+    }
+    assert!(!svg.contains("NaN") && !svg.contains("inf"));
+}

@@ -82,10 +82,15 @@ fn missions(study: &Study, store: &mut Store, console: &Console, stop: Stop) -> 
     Ok(())
 }
 
+/// Reads the weather, and what there is to say of its files.
+pub fn weather_of(study: &Study) -> Result<(Weather, Vec<FileRecord>), Failure> {
+    let files = weather::discover(&study.base, &study.weather_path, &study.weather.format)?;
+    Ok(weather::read(&files, &study.weather)?)
+}
+
 /// Reads the weather and records its files.
 pub fn read_weather(study: &Study, store: &mut Store) -> Result<Weather, Failure> {
-    let files = weather::discover(&study.base, &study.weather_path, &study.weather.format)?;
-    let (weather, records) = weather::read(&files, &study.weather)?;
+    let (weather, records) = weather_of(study)?;
     let mut paths = Vec::new();
     for record in records {
         paths.push(record.path.clone());

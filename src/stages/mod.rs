@@ -3,6 +3,7 @@
 mod assumptions;
 mod check;
 mod ingest;
+mod missions;
 mod report;
 mod shade;
 mod show;

@@ -7,11 +7,13 @@ use store::Store;
 
 use super::assumptions::assumptions;
 use super::input_hash;
+use super::missions;
 use crate::failure::Failure;
 use crate::study::Study;
 
 /// Writes the report and returns what the study found, in a few lines.
 pub fn report(study: &Study, store: &mut Store) -> Result<Vec<String>, Failure> {
+    let (mission_figures, pareto_points) = missions::figures(study, store)?;
     let content = StudyReport {
         name: study.name.clone(),
         note: study.note.clone(),
@@ -30,6 +32,8 @@ pub fn report(study: &Study, store: &mut Store) -> Result<Vec<String>, Failure> 
         assumptions: assumptions(study),
         simulated_years: store.simulated_years()?,
         simulated_classes: store.simulated_classes()?,
+        mission_figures,
+        pareto_points,
     };
     let files = report::render(&content).map_err(|e| Failure::Inputs(e.into()))?;
     std::fs::create_dir_all(&study.report_dir)

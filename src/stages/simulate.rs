@@ -102,7 +102,7 @@ pub fn simulate(study: &Study, store: &mut Store, console: &Console, stop: Stop)
 }
 
 /// The samples of each mission, up to the first segment that gave none; by mission.
-fn missions(samples: Vec<SampleRow>) -> Vec<Vec<SampleRow>> {
+pub fn missions(samples: Vec<SampleRow>) -> Vec<Vec<SampleRow>> {
     let mut by_mission: BTreeMap<String, Vec<SampleRow>> = BTreeMap::new();
     for sample in samples {
         by_mission.entry(sample.mission.clone()).or_default().push(sample);
@@ -156,15 +156,7 @@ fn job(
         return Ok((job, 0));
     }
     job.loads = store.loads(path)?;
-    // Ids of a mission's samples rise with time; those of other buses lie elsewhere.
-    let optima = store.optima(samples[0].sample_id, samples[samples.len() - 1].sample_id)?;
-    let solved: BTreeMap<(i64, i64, i64), Operation> = optima
-        .iter()
-        .filter_map(|o| match o.outcome {
-            Some(Outcome::Solved(operation, _)) => Some(((o.id.design_id, o.id.window_id, o.id.sample_id), operation)),
-            _ => None,
-        })
-        .collect();
+    let solved = operations(store, samples)?;
     for point in &mut job.points {
         let of = |s: &SampleRow| solved.get(&(point.design_id, point.window_id, s.sample_id)).copied();
         point.operations = samples.iter().map_while(of).collect();
@@ -175,40 +167,83 @@ fn job(
     Ok((job, missing))
 }
 
+/// The optima of a mission's samples, by design, window and sample.
+pub fn operations(store: &mut Store, samples: &[SampleRow]) -> Result<BTreeMap<(i64, i64, i64), Operation>, Failure> {
+    let (Some(first), Some(last)) = (samples.first(), samples.last()) else { return Ok(BTreeMap::new()) };
+    // Ids of a mission's samples rise with time; those of other buses lie elsewhere.
+    let optima = store.optima(first.sample_id, last.sample_id)?;
+    let solved = optima.iter().filter_map(|o| match o.outcome {
+        Some(Outcome::Solved(operation, _)) => Some(((o.id.design_id, o.id.window_id, o.id.sample_id), operation)),
+        _ => None,
+    });
+    Ok(solved.collect())
+}
+
+/// A mission's loads and weather in time.
+pub struct Setting<'v> {
+    changes: Vec<Change>,
+    minutes: Vec<Cabin<'v>>,
+    /// The cabin under the mean disturbances of each segment.
+    cabins: Vec<Cabin<'v>>,
+    segment_s: u32,
+}
+
+impl<'v> Setting<'v> {
+    /// `None` where the weather has a gap.
+    pub fn new(
+        study: &'v Study,
+        views: &'v PassengerViews,
+        weather: &Weather,
+        shadow: &ShadowYear,
+        samples: &[SampleRow],
+        loads: &[LoadRow],
+    ) -> Option<Self> {
+        let first = samples.first()?;
+        let start = DateTime::parse_from_rfc3339(&first.start_utc).ok()?.to_utc();
+        let segment_s = first.duration_s;
+        let offset_s = first.segment * segment_s;
+        let change = |l: &LoadRow| Change {
+            second: l.second.saturating_sub(offset_s),
+            passengers: l.passengers,
+            door_open: l.door_open,
+        };
+        Some(Self {
+            changes: loads.iter().map(change).collect(),
+            minutes: minutes(study, views, weather, shadow, start, segment_s * samples.len() as u32)?,
+            cabins: samples.iter().map(|s| Cabin::new(&study.vehicle, views, &disturbances(s))).collect(),
+            segment_s,
+        })
+    }
+
+    /// The optima of the segments in one comfort window.
+    pub fn hours(&self, operations: &[Operation], window: cabin::ComfortWindow) -> Vec<Hour> {
+        let hour = |(o, cabin): (&Operation, &Cabin<'_>)| Hour { optimum: *o, band_k: band_k(cabin, o, window) };
+        operations.iter().zip(&self.cabins).map(hour).collect()
+    }
+
+    /// The mission with the given optima.
+    pub fn mission<'m>(&'m self, study: &Study, hours: &'m [Hour]) -> Mission<'m, 'v> {
+        Mission {
+            changes: &self.changes,
+            minutes: &self.minutes,
+            hours,
+            segment_s: self.segment_s,
+            door_open_share: study.missions.door_open_share,
+        }
+    }
+}
+
 fn run(study: &Study, views: &PassengerViews, weather: &Weather, shadow: &ShadowYear, job: &Job) -> Vec<SimulationRow> {
     let first = &job.samples[0];
-    let Ok(start) = DateTime::parse_from_rfc3339(&first.start_utc) else { return Vec::new() };
-    let segment_s = first.duration_s;
-    let Some(minutes) = minutes(study, views, weather, shadow, start.to_utc(), segment_s * job.samples.len() as u32)
-    else {
+    let Some(setting) = Setting::new(study, views, weather, shadow, &job.samples, &job.loads) else {
         return Vec::new();
     };
-    let offset_s = first.segment * segment_s;
-    let change = |l: &LoadRow| Change {
-        second: l.second.saturating_sub(offset_s),
-        passengers: l.passengers,
-        door_open: l.door_open,
-    };
-    let changes: Vec<Change> = job.loads.iter().map(change).collect();
-    let cabins: Vec<Cabin> = job.samples.iter().map(|s| Cabin::new(&study.vehicle, views, &disturbances(s))).collect();
     let ambient_k = job.samples.iter().map(|s| s.ambient_temperature_k).sum::<f64>() / job.samples.len() as f64;
     let mut rows = Vec::new();
     for point in &job.points {
         let design = &study.grid.designs()[point.design];
-        let window = study.grid.windows()[point.window];
-        let hours: Vec<Hour> = point
-            .operations
-            .iter()
-            .zip(&cabins)
-            .map(|(optimum, cabin)| Hour { optimum: *optimum, band_k: band_k(cabin, optimum, window) })
-            .collect();
-        let mission = Mission {
-            changes: &changes,
-            minutes: &minutes,
-            hours: &hours,
-            segment_s,
-            door_open_share: study.missions.door_open_share,
-        };
+        let hours = setting.hours(&point.operations, study.grid.windows()[point.window]);
+        let mission = setting.mission(study, &hours);
         for conduct in Conduct::ALL {
             let Some(s) = simulate::simulate(&mission, design, &study.dynamics, conduct, |_| ()) else { continue };
             rows.push(SimulationRow {
