@@ -1,7 +1,7 @@
 //! The paper's figure of model approximations: the smooth door law beside the exact one, and the error of the surrogate of the
 //! predicted mean vote at an ambient temperature of 10 °C.
 //!
-//! `cargo run --release --example approximations > docs/approximations.svg`
+//! `cargo run --release -p busclimate-report --example approximations > docs/approximations.svg`
 
 #![expect(clippy::print_stdout, reason = "the figure is the output")]
 
@@ -13,7 +13,7 @@ use std::fmt::Write as _;
 const RANGE_C: (f64, f64) = (0.0, 45.0);
 const CELL_K: f64 = 1.0;
 /// Error of the darkest colour.
-const LARGEST: f64 = 0.05;
+const LARGEST: f64 = 0.02;
 
 fn main() {
     let mut svg = String::from(
@@ -105,7 +105,8 @@ fn vote_error(svg: &mut String) {
     let _ = writeln!(
         svg,
         "<rect x=\"480\" y=\"60\" width=\"280\" height=\"280\" fill=\"none\" stroke=\"#666\"/>\n\
-         <text x=\"480\" y=\"40\" font-size=\"14\">|PMV surrogate − PMV| at 10 °C ambient: mean {mean:.4}, largest {largest:.3}</text>\n\
+         <text x=\"480\" y=\"40\" font-size=\"14\">|PMV surrogate − PMV| at 10 °C ambient</text>\n\
+         <text x=\"480\" y=\"54\" fill=\"#444\">mean {mean:.4}, largest {largest:.3}</text>\n\
          <text x=\"620\" y=\"376\" text-anchor=\"middle\">cabin temperature in °C</text>\n\
          <text transform=\"translate(446 200) rotate(-90)\" text-anchor=\"middle\">mean radiant temperature in °C</text>"
     );
@@ -117,7 +118,7 @@ fn vote_error(svg: &mut String) {
             "<rect x=\"790\" y=\"{top:.1}\" width=\"20\" height=\"24\" fill=\"{}\"/>{}",
             shade(error),
             if n % 2 == 0 {
-                format!("<text x=\"816\" y=\"{:.1}\">{error:.2}</text>", top + 16.0)
+                format!("<text x=\"816\" y=\"{:.1}\">{error:.3}</text>", top + 16.0)
             } else {
                 String::new()
             }

@@ -76,9 +76,14 @@ pub fn simulate(study: &Study, store: &mut Store, console: &Console, stop: Stop)
                 jobs.push(job);
             }
         }
-        let rows: Vec<Vec<SimulationRow>> =
+        let rows: Vec<Option<Vec<SimulationRow>>> =
             jobs.par_iter().map(|job| run(study, &views, &weather, &shadow, job)).collect();
-        let rows = rows.concat();
+        for (job, rows) in jobs.iter().zip(&rows) {
+            if rows.is_none() {
+                console.warn(&format!("{} is not simulated: the weather has a gap in it", job.samples[0].mission));
+            }
+        }
+        let rows = rows.into_iter().flatten().flatten().collect::<Vec<_>>();
         simulated += rows.len() as u64;
         if !rows.is_empty() {
             store.put_simulations(&rows)?;
@@ -233,11 +238,16 @@ impl<'v> Setting<'v> {
     }
 }
 
-fn run(study: &Study, views: &PassengerViews, weather: &Weather, shadow: &ShadowYear, job: &Job) -> Vec<SimulationRow> {
+/// Simulates a mission in all the ways that are wanted; `None` where the weather has a gap.
+fn run(
+    study: &Study,
+    views: &PassengerViews,
+    weather: &Weather,
+    shadow: &ShadowYear,
+    job: &Job,
+) -> Option<Vec<SimulationRow>> {
     let first = &job.samples[0];
-    let Some(setting) = Setting::new(study, views, weather, shadow, &job.samples, &job.loads) else {
-        return Vec::new();
-    };
+    let setting = Setting::new(study, views, weather, shadow, &job.samples, &job.loads)?;
     let ambient_k = job.samples.iter().map(|s| s.ambient_temperature_k).sum::<f64>() / job.samples.len() as f64;
     let mut rows = Vec::new();
     for point in &job.points {
@@ -265,7 +275,7 @@ fn run(study: &Study, views: &PassengerViews, weather: &Weather, shadow: &Shadow
             });
         }
     }
-    rows
+    Some(rows)
 }
 
 /// Cabin temperatures at the two limits of the window, with the heaters as the optimum has them.

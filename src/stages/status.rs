@@ -19,6 +19,7 @@ struct Status<'a> {
     infeasible: u64,
     not_converged: u64,
     pending: u64,
+    simulated_missions: usize,
     missing_months: Vec<u8>,
     refused_files: Vec<String>,
     last_run: Option<Run>,
@@ -60,6 +61,7 @@ pub fn status(study: &Study, json: bool) -> Result<Ending, Failure> {
         infeasible: counts.infeasible,
         not_converged: counts.not_converged,
         pending: summary.counts.points.saturating_sub(counts.solved + counts.infeasible + counts.not_converged),
+        simulated_missions: store.simulation_keys()?.len(),
         missing_months: (1..=12).filter(|m| !months.iter().any(|row| row.month == *m)).collect(),
         refused_files: summary.refused,
         last_run: store.last_run()?.map(Run::from),
@@ -76,6 +78,7 @@ pub fn status(study: &Study, json: bool) -> Result<Ending, Failure> {
         "{} points: {} solved, {} infeasible, {} not converged, {} pending",
         status.points, status.solved, status.infeasible, status.not_converged, status.pending
     ))?;
+    say(format_args!("{} missions simulated (mission × design × window)", status.simulated_missions))?;
     if !status.missing_months.is_empty() {
         say(format_args!("months without samples: {:?}", status.missing_months))?;
     }
