@@ -356,6 +356,64 @@ fn paper_the_power_limit_shows_at_high_comfort_demands() {
 }
 
 #[test]
+fn paper_the_largest_summer_violation_follows_a_mode_switch() {
+    let vehicle = Vehicle::default();
+    let views = PassengerViews::new(&vehicle);
+    let design = design("hp+curtain", Heating::HeatPump, false, true);
+    let limit = 0.5;
+    // A clear day in July, from before dawn to night: ambient temperature in °C and direct irradiance in W/m² by the hour.
+    let day_of = [
+        (15.0, 0.0),
+        (15.5, 100.0),
+        (18.0, 350.0),
+        (21.0, 550.0),
+        (24.0, 700.0),
+        (27.0, 800.0),
+        (30.0, 800.0),
+        (32.0, 750.0),
+        (33.0, 600.0),
+        (32.0, 350.0),
+        (29.0, 100.0),
+        (26.0, 0.0),
+        (23.0, 0.0),
+    ];
+    let samples: Vec<Disturbances> = day_of.iter().map(|&(c, dni)| day(c, dni, 16.0, 0.15)).collect();
+    let hours: Vec<Hour> = samples
+        .iter()
+        .map(|d| hour(&vehicle, &views, optimum(&vehicle, &views, &design, d, limit), d, limit))
+        .collect();
+    // Between the middles of the hours the weather is linear.
+    let minutes: Vec<Cabin<'_>> = (0..60 * day_of.len())
+        .map(|m| {
+            let place = (m as f64 + 0.5) / 60.0 - 0.5;
+            let before = (place.max(0.0) as usize).min(day_of.len() - 2);
+            let share = (place - before as f64).clamp(0.0, 1.0);
+            let mix =
+                |f: fn(&(f64, f64)) -> f64| f(&day_of[before]) + share * (f(&day_of[before + 1]) - f(&day_of[before]));
+            Cabin::new(&vehicle, &views, &day(mix(|h| h.0), mix(|h| h.1), 0.0, 0.0))
+        })
+        .collect();
+    let changes: Vec<Change> =
+        stops(3600 * day_of.len() as u32).into_iter().map(|c| Change { passengers: 16.0, ..c }).collect();
+    let mission =
+        Mission { changes: &changes, minutes: &minutes, hours: &hours, segment_s: 3600, door_open_share: 0.6 };
+    let mut worst = (0, 0.0);
+    simulate(&mission, &design, &Dynamics::default(), Conduct::WarmStart, |now| {
+        let excess = now.pmv_15min.abs() - limit;
+        if excess > worst.1 {
+            worst = (now.second / 3600, excess);
+        }
+    })
+    .expect("it has hours");
+    let modes: Vec<OperatingMode> = hours.iter().map(|h| h.optimum.mode).collect();
+    let at = worst.0 as usize;
+    assert!(modes.contains(&OperatingMode::Cooling) && modes.contains(&OperatingMode::Passive), "{modes:?}");
+    // In the hour that it begins, or while the steady state already counts on the next one.
+    let switches = at > 0 && modes[at] != modes[at - 1] || at + 1 < modes.len() && modes[at] != modes[at + 1];
+    assert!(switches, "the largest violation, {worst:?}, lies in an hour of {modes:?} without a switch");
+}
+
+#[test]
 fn prop_a_controller_changes_nothing_but_its_own_state() {
     let (a, _, _) = winter_mission(-0.7, 0.5, 3, Conduct::FreeMode);
     let (b, _, _) = winter_mission(-0.7, 0.5, 3, Conduct::FreeMode);
