@@ -14,6 +14,8 @@ pub struct MissionFigure {
     pub title: String,
     /// What it is, and where the data come from.
     pub caption: String,
+    /// What the author of the study says of the data; empty for nothing.
+    pub note: String,
     /// From the first to the last hour on the axis.
     pub hours: [f64; 2],
     /// What the axis of hours is called.
@@ -48,7 +50,7 @@ pub struct Curve {
 
 const LEFT: f64 = 70.0;
 const RIGHT: f64 = 880.0;
-const TOP: f64 = 76.0;
+const TOP: f64 = 96.0;
 const PANEL: f64 = 92.0;
 const STRIDE: f64 = 116.0;
 
@@ -72,7 +74,7 @@ pub fn mission_svg(figure: &MissionFigure) -> Result<String, ReportError> {
     environment.set_auto_escape_callback(|_| AutoEscape::Html);
     environment.add_template("mission.svg", TEMPLATE)?;
     let content = context! {
-        title => &figure.title, caption => &figure.caption, axis => &figure.axis, panels, hours, left => LEFT, right => RIGHT,
+        title => &figure.title, caption => &figure.caption, note => &figure.note, axis => &figure.axis, panels, hours, left => LEFT, right => RIGHT,
         top => TOP, bottom, axis_y => bottom + 14.0, height => bottom + 40.0,
     };
     Ok(environment.get_template("mission.svg")?.render(content)?)

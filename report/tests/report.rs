@@ -239,6 +239,7 @@ fn prop_figures_of_missions_are_xml_and_keep_their_panels_apart() {
     let figure = report::MissionFigure {
         title: "A & B".to_owned(),
         caption: "c".to_owned(),
+        note: "synthetic".to_owned(),
         hours: [6.0, 8.0],
         axis: "h".to_owned(),
         panels: vec![
@@ -252,7 +253,7 @@ fn prop_figures_of_missions_are_xml_and_keep_their_panels_apart() {
     let document = roxmltree::Document::parse(&svg).unwrap();
     let labels: Vec<&str> =
         document.descendants().filter(|n| n.has_tag_name("text")).filter_map(|n| n.text()).collect();
-    for label in ["A & B", "<a>", "T", "P", "none", "6", "7", "8", "−2000"] {
+    for label in ["A & B", "synthetic", "<a>", "T", "P", "none", "6", "7", "8", "−2000"] {
         assert!(labels.contains(&label), "{label} is missing in {labels:?}");
     }
     assert!(!svg.contains("NaN") && !svg.contains("inf"));

@@ -204,8 +204,9 @@ fn figure(
         caption: format!(
             "{}; {}",
             samples[0].source_path,
-            if own { "the mission that the paper shows" } else { "not a mission of the paper" }
+            if own { "named like the mission that the paper shows" } else { "not a mission of the paper" }
         ),
+        note: study.note.clone().unwrap_or_default(),
         hours: [first_h, end_h],
         axis: format!("local time in h ({})", study.zone),
         panels,
