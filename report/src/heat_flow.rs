@@ -24,7 +24,7 @@ pub struct HeatFlowFigure {
     pub air_unit_power_w: f64,
 }
 
-/// A box: place, size, name, value.
+/// Where a box stands, and its size.
 #[derive(Clone, Copy)]
 struct Place {
     x: f64,
