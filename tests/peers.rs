@@ -261,13 +261,14 @@ fn xval_casadi_ipopt_optima() {
     let mut program = NlpSolver::new(&vehicle, &views, &grid, &VoteForm::Exact, DoorLaw::Exact);
     let mut efforts = vec![Effort::default(); grid.points()];
     let begin = Instant::now();
+    let (mut programs, mut subproblems) = (0, 0);
     for d in samples.iter().step_by(10) {
         program.solve(d, &mut optima, &mut efforts);
+        programs += efforts.iter().map(|e| e.programs).sum::<u32>();
+        subproblems += efforts.iter().map(|e| e.subproblems).sum::<u32>();
     }
-    let programs: u32 = samples.iter().step_by(10).count() as u32 * efforts.iter().map(|e| e.programs).sum::<u32>();
     let program_s = begin.elapsed().as_secs_f64() / f64::from(programs);
-    let subproblems = efforts.iter().map(|e| f64::from(e.subproblems)).sum::<f64>();
-    let each = subproblems / efforts.iter().map(|e| f64::from(e.programs)).sum::<f64>();
+    let each = f64::from(subproblems) / f64::from(programs);
     let (ipopt_s, ipopt_point_s) = (effort[1] / effort[0], effort[1] / points as f64);
     println!("{compared} points compared, {lost} without a solution of Ipopt, largest difference {largest_w:.1e} W");
     println!("| program | time a problem | time a point |\n|---|---:|---:|");
