@@ -44,6 +44,15 @@ fn cli_one_unreadable_mission_does_not_stop_the_others() {
 }
 
 #[test]
+fn cli_where_every_mission_is_refused_the_reasons_are_said() {
+    let scratch = Scratch::demo(1);
+    let file = format!("ztbus/{}", scratch.missions().remove(0));
+    scratch.write(&file, scratch.read(&file).replacen("status_doorIsOpen", "door", 1));
+    let run = scratch.expect(3, &["run"]);
+    assert!(run.stderr.contains(&format!("refused: {file}, line 1, column status_doorIsOpen")), "{}", run.stderr);
+}
+
+#[test]
 fn cli_smaller_faults_of_a_mission_are_recorded_with_lines() {
     let scratch = Scratch::demo(2);
     let name = scratch.missions().remove(0);

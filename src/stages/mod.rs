@@ -68,10 +68,11 @@ pub fn run(study: &Study, stages: &[Stage], console: &Console, stop: Stop) -> Re
         store.end_run(id, &now(), end, Some(&input_hash), summary.counts)?;
     }
     store.close()?;
-    outcome?;
+    // Said first, since a refusal may be why nothing could be done.
     for path in &summary.refused {
         console.warn(&format!("refused: {path}"));
     }
+    outcome?;
     say(format_args!(
         "{}: {} points, {} solved, {} without an optimum; {} files refused; {:.1} s",
         study.name,
