@@ -113,6 +113,16 @@ pub enum Method {
     NlpSurrogate,
 }
 
+impl From<Method> for solve::Method {
+    fn from(typed: Method) -> Self {
+        match typed {
+            Method::Fast => Self::Fast,
+            Method::Nlp => Self::Nlp,
+            Method::NlpSurrogate => Self::NlpSurrogate,
+        }
+    }
+}
+
 #[derive(Debug, ClapArgs)]
 pub struct PartArgs {
     /// Share of the stored points that is solved again, 0 … 1.

@@ -2,10 +2,11 @@
 
 use anyhow::{Context, anyhow};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use pipeline::Progress;
 use std::fmt;
 use std::io::{IsTerminal, Write, stderr, stdout};
-use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, OnceLock, PoisonError};
 use tracing_subscriber::filter::LevelFilter;
 
 use crate::args::Log;
@@ -14,19 +15,16 @@ use crate::failure::Failure;
 static STOP: AtomicBool = AtomicBool::new(false);
 static STYLE: OnceLock<ProgressStyle> = OnceLock::new();
 
-/// Asks whether a signal has come.
-pub type Stop = fn() -> bool;
-
 /// Turns Ctrl-C and SIGTERM into a flag that the stages ask for between their steps.
-pub fn stop_on_signal() -> Result<Stop, Failure> {
+pub fn stop_on_signal() -> Result<(), Failure> {
     ctrlc::set_handler(|| STOP.store(true, Ordering::Relaxed))
-        .map_err(|e| Failure::Usage(anyhow!("cannot listen to signals: {e}")))?;
-    Ok(|| STOP.load(Ordering::Relaxed))
+        .map_err(|e| Failure::Usage(anyhow!("cannot listen to signals: {e}")))
 }
 
 /// What goes to stderr.
 pub struct Console {
     bars: bool,
+    bar: Mutex<ProgressBar>,
 }
 
 impl Console {
@@ -37,29 +35,53 @@ impl Console {
             Log::Text => lines.without_time().with_ansi(stderr().is_terminal()).init(),
             Log::Json => lines.json().flatten_event(true).init(),
         }
-        Self { bars: !quiet && log == Log::Text && stderr().is_terminal() }
-    }
-
-    pub fn info(&self, message: &str) {
-        tracing::info!("{message}");
-    }
-
-    pub fn warn(&self, message: &str) {
-        tracing::warn!("{message}");
+        let bars = !quiet && log == Log::Text && stderr().is_terminal();
+        Self { bars, bar: Mutex::new(ProgressBar::hidden()) }
     }
 
     pub fn failed(&self, failure: &Failure) {
         tracing::error!("{failure}");
     }
 
+    fn with_bar(&self, work: impl FnOnce(&mut ProgressBar)) {
+        // A bar that another thread left in the middle of a step is still a bar.
+        work(&mut self.bar.lock().unwrap_or_else(PoisonError::into_inner));
+    }
+}
+
+impl Progress for Console {
     /// A bar on a terminal, nothing elsewhere.
-    pub fn bar(&self, label: &'static str, length: u64) -> ProgressBar {
+    fn begin(&self, label: &'static str, steps: u64) {
         let target = if self.bars { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
         let style = STYLE.get_or_init(|| {
             let template = "{msg:>16} [{bar:40}] {human_pos}/{human_len} {eta} left";
             ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar())
         });
-        ProgressBar::with_draw_target(Some(length), target).with_style(style.clone()).with_message(label)
+        let new = ProgressBar::with_draw_target(Some(steps), target).with_style(style.clone()).with_message(label);
+        self.with_bar(|bar| {
+            bar.finish_and_clear();
+            *bar = new;
+        });
+    }
+
+    fn advance(&self, steps: u64) {
+        self.with_bar(|bar| bar.inc(steps));
+    }
+
+    fn end(&self) {
+        self.with_bar(|bar| bar.finish_and_clear());
+    }
+
+    fn info(&self, message: &str) {
+        tracing::info!("{message}");
+    }
+
+    fn warn(&self, message: &str) {
+        tracing::warn!("{message}");
+    }
+
+    fn stop(&self) -> bool {
+        STOP.load(Ordering::Relaxed)
     }
 }
 

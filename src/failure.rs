@@ -1,17 +1,15 @@
 //! How the program ends.
 
-use ingest::IngestError;
+use pipeline::PipelineError;
 use std::process::ExitCode;
-use store::StoreError;
-
-use crate::study::file::StudyFileError;
+use study::StudyFileError;
 
 /// It finished.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Ending {
     /// Exit status 0.
     Done,
-    /// Points stayed unsolved or inputs were refused: exit status 1.
+    /// Points stayed unsolved, missions were not simulated or inputs were refused: exit status 1.
     Losses,
 }
 
@@ -25,11 +23,15 @@ pub enum Failure {
     #[error("{0:#}")]
     Inputs(anyhow::Error),
     /// A signal came: exit status 4.
-    #[error("interrupted; everything finished so far is stored: run again to resume")]
-    Interrupted,
+    #[error(transparent)]
+    Interrupted(PipelineError),
 }
 
 impl Ending {
+    pub fn of(complete: bool) -> Self {
+        if complete { Self::Done } else { Self::Losses }
+    }
+
     pub fn code(self) -> ExitCode {
         match self {
             Self::Done => ExitCode::SUCCESS,
@@ -43,7 +45,7 @@ impl Failure {
         ExitCode::from(match self {
             Self::Usage(_) => 2,
             Self::Inputs(_) => 3,
-            Self::Interrupted => 4,
+            Self::Interrupted(_) => 4,
         })
     }
 }
@@ -54,14 +56,12 @@ impl From<StudyFileError> for Failure {
     }
 }
 
-impl From<IngestError> for Failure {
-    fn from(error: IngestError) -> Self {
-        Self::Inputs(error.into())
-    }
-}
-
-impl From<StoreError> for Failure {
-    fn from(error: StoreError) -> Self {
-        Self::Inputs(error.into())
+impl From<PipelineError> for Failure {
+    fn from(error: PipelineError) -> Self {
+        match error {
+            PipelineError::Request(_) => Self::Usage(error.into()),
+            PipelineError::Interrupted => Self::Interrupted(error),
+            _ => Self::Inputs(error.into()),
+        }
     }
 }

@@ -1,24 +1,24 @@
 //! `busclimate`: what thermal comfort in an electric city bus costs over a whole year.
 //!
-//! This package only wires the rooms together: `args` is what was typed, `study` what it means, `stages` the work in
-//! its order. Results go to stdout, progress and log lines to stderr; the exit status is that of [`failure`].
+//! This package is the command line and nothing else: `args` is what was typed, `pipeline` does the work, `print` says what came
+//! of it. Results go to stdout, progress and log lines to stderr; the exit status is that of [`failure`].
 
 mod args;
 mod console;
 mod failure;
 mod prepare;
-mod stages;
-mod study;
+mod print;
 
 use anyhow::anyhow;
 use clap::Parser;
 use std::path::Path;
 use std::process::ExitCode;
+use std::time::Instant;
 
 use args::{Args, Command, StudyArgs};
-use console::Console;
+use console::{Console, say};
 use failure::{Ending, Failure};
-use stages::Stage;
+use pipeline::{Part, Point, Stage};
 use study::Study;
 
 /// Missions come and go as blocks of megabytes: the system's allocator gives them back to the kernel each time, which
@@ -48,7 +48,7 @@ fn dispatch(args: &Args, console: &Console) -> Result<Ending, Failure> {
             .build_global()
             .map_err(|e| Failure::Usage(anyhow!("--threads {threads}: {e}")))?;
     }
-    let stop = console::stop_on_signal()?;
+    console::stop_on_signal()?;
     match &args.command {
         Command::Demo(demo) => {
             prepare::demo(demo, console)?;
@@ -59,27 +59,47 @@ fn dispatch(args: &Args, console: &Console) -> Result<Ending, Failure> {
             Ok(Ending::Done)
         }
         Command::Canyon(args) => {
-            prepare::canyon(&open(&args.study)?, args)?;
+            let study = open(&args.study)?;
+            let (path, kinds) = pipeline::write_canyon(&study, &args.street_azimuths_deg, &args.heights_to_width)?;
+            say(format_args!("{} is written: the shade of {kinds} kinds of street canyons", path.display()))?;
             Ok(Ending::Done)
         }
-        Command::Check(study) => stages::check(&open(study)?),
-        Command::Ingest(study) => stages::run(&open(study)?, &[Stage::Ingest], console, stop),
-        Command::Shade(study) => stages::run(&open(study)?, &[Stage::Shade], console, stop),
-        Command::Solve(args) => stages::run(&open(&args.study)?.solved_by(args.method), &[Stage::Solve], console, stop),
-        Command::Simulate(study) => stages::run(&open(study)?, &[Stage::Simulate], console, stop),
-        Command::Report(study) => stages::run(&open(study)?, &[Stage::Report], console, stop),
+        Command::Check(study) => {
+            let study = open(study)?;
+            print::check(&study, &pipeline::check(&study)?)
+        }
+        Command::Ingest(study) => run(&open(study)?, &[Stage::Ingest], console),
+        Command::Shade(study) => run(&open(study)?, &[Stage::Shade], console),
+        Command::Solve(args) => run(&open(&args.study)?.solved_by(args.method.into()), &[Stage::Solve], console),
+        Command::Simulate(study) => run(&open(study)?, &[Stage::Simulate], console),
+        Command::Report(study) => run(&open(study)?, &[Stage::Report], console),
         Command::Run(args) => {
             let study = if args.study.study.is_none() && !Path::new(STUDY_FILE).exists() {
                 StudyArgs { study: Some(prepare::demo_study(console)?), db: args.study.db.clone() }
             } else {
                 args.study.clone()
             };
-            stages::run(&open(&study)?.solved_by(args.method), &Stage::ALL, console, stop)
+            run(&open(&study)?.solved_by(args.method.into()), &Stage::ALL, console)
         }
-        Command::Verify { study, part } => stages::verify(open(study)?, part, console, stop),
-        Command::Status { study, json } => stages::status(&open(study)?, *json),
-        Command::Show { study, point } => stages::show(&open(study)?, point),
+        Command::Verify { study, part } => {
+            let study = open(study)?;
+            let name = study.name.clone();
+            let part = Part { fraction: part.fraction, seed: part.seed };
+            print::verification(&name, &pipeline::verify(study, part, console)?)
+        }
+        Command::Status { study, json } => print::status(&pipeline::status(&open(study)?)?, *json),
+        Command::Show { study, point } => {
+            let wanted = Point { sample: point.sample, design: point.design.clone(), pmv_limit: point.pmv_limit };
+            print::shown(&wanted, &pipeline::show(&open(study)?, &wanted)?, point.figure.as_deref())
+        }
     }
+}
+
+/// Runs stages and says what came of it.
+fn run(study: &Study, stages: &[Stage], console: &Console) -> Result<Ending, Failure> {
+    let begin = Instant::now();
+    let done = pipeline::run(study, stages, console)?;
+    print::run(study, stages, &done, begin.elapsed())
 }
 
 fn open(args: &StudyArgs) -> Result<Study, Failure> {

@@ -1,16 +1,14 @@
-//! What comes before a run: study files, demo data sets, shadow files.
+//! What comes before a run: study files and demo data sets.
 
 use anyhow::{Context, anyhow};
-use shading::{Street, canyon_year, even_azimuths_rad, town_streets};
+use pipeline::{Progress, write_beside};
 use std::path::{Path, PathBuf};
 
 use crate::STUDY_FILE;
-use crate::args::{CanyonArgs, DemoArgs};
+use crate::args::DemoArgs;
 use crate::console::{Console, say};
 use crate::failure::Failure;
-use crate::stages;
-use crate::study::Study;
-use crate::study::template::{self, Template, WeatherKeys};
+use study::template::{self, Template, WeatherKeys};
 
 /// Where a run without a study file makes its demo.
 const DEMO_FOLDER: &str = "busclimate-demo";
@@ -61,16 +59,16 @@ pub fn demo(args: &DemoArgs, console: &Console) -> Result<(), Failure> {
 
     let real = args.weather.as_deref().map(real_weather).transpose()?;
     let weather = real.as_ref().map(|w| (w.name.as_str(), w.bytes.as_slice()));
-    let bar = console.bar("demo missions", plans.len() as u64);
-    let summary = demo::write(&args.dir, args.seed, &plans, weather, &|done, _| bar.set_position(done))
+    console.begin("demo missions", plans.len() as u64);
+    let summary = demo::write(&args.dir, args.seed, &plans, weather, &|_, _| console.advance(1))
         .map_err(|e| Failure::Inputs(e.into()))?;
-    bar.finish_and_clear();
+    console.end();
     let note = "Synthetic data, made by busclimate: it shows how the program works and says nothing about Zürich.";
     let format = real.as_ref().map_or(SYNTHETIC, |w| w.format);
     let study = template::render(&Template { name: "demo", note: Some(note), buses: &buses, weather: format });
     // Written last: a study file that is there has all its data.
     let path = args.dir.join(STUDY_FILE);
-    stages::write_beside(&path, study.as_bytes()).map_err(Failure::Inputs)?;
+    write_beside(&path, study.as_bytes())?;
     say(format_args!(
         "{} missions, {} rows, {} MB of synthetic telemetry; study file {}",
         summary.missions,
@@ -93,49 +91,13 @@ fn real_weather(path: &Path) -> Result<RealWeather, Failure> {
         .with_context(|| format!("cannot read {}; give a weather file", path.display()))
         .map_err(Failure::Inputs)?;
     let header = String::from_utf8_lossy(bytes.split(|&b| b == b'\n').next().unwrap_or_default()).into_owned();
-    let format = if header.contains("reference_timestamp") {
-        WeatherKeys::MeteoSwissOgd
-    } else if header.contains("rad.global") {
-        WeatherKeys::Sia4028
-    } else if ["interval_start_utc", "T_degC", "StrGlo_Wm2"].iter().all(|c| header.contains(c)) {
-        WeatherKeys::HourlyCsv
-    } else {
-        return Err(Failure::Inputs(anyhow!(
+    let format = WeatherKeys::of_header(&header).ok_or_else(|| {
+        Failure::Inputs(anyhow!(
             "{}: line 1: not the header of a weather file that a demo can take; give MeteoSwiss' open data, a SIA 4028 year, \
              or hourly CSV with interval_start_utc, T_degC and StrGlo_Wm2",
             path.display()
-        )));
-    };
+        ))
+    })?;
     let name = path.file_name().map_or_else(|| "weather.csv".to_owned(), |n| n.to_string_lossy().into_owned());
     Ok(RealWeather { name, bytes, format })
-}
-
-/// Writes the shadow file that the study names.
-pub fn canyon(study: &Study, args: &CanyonArgs) -> Result<(), Failure> {
-    let usage = |message: String| Failure::Usage(anyhow!(message));
-    if let Some(h) = args.heights_to_width.iter().find(|h| !(0.0..=20.0).contains(*h)) {
-        return Err(usage(format!("--height-to-width {h} must lie between 0 and 20")));
-    }
-    if let Some(a) = args.street_azimuths_deg.iter().find(|a| !a.is_finite()) {
-        return Err(usage(format!("--street-azimuth-deg {a} must be a number of degrees")));
-    }
-    let path = study.base.join(&study.shadow_path);
-    if path.exists() {
-        return Err(usage(format!("{} is there already; it is left as it is", path.display())));
-    }
-    let given: Vec<f64> = args.street_azimuths_deg.iter().map(|a| a.to_radians()).collect();
-    let azimuths = if given.is_empty() { even_azimuths_rad() } else { given };
-    let kinds: Vec<(f64, f64)> = if args.heights_to_width.is_empty() {
-        let first = town_streets()[0].azimuth_rad;
-        let mixture = town_streets().into_iter().filter(|s| s.azimuth_rad == first);
-        mixture.map(|s| (s.height_to_width, s.share)).collect()
-    } else {
-        args.heights_to_width.iter().map(|&h| (h, 1.0)).collect()
-    };
-    let street = |&azimuth_rad: &f64| {
-        kinds.iter().map(move |&(height_to_width, share)| Street { azimuth_rad, height_to_width, share })
-    };
-    let streets: Vec<Street> = azimuths.iter().flat_map(street).collect();
-    stages::write_beside(&path, canyon_year(&study.site, &streets).to_csv().as_bytes()).map_err(Failure::Inputs)?;
-    say(format_args!("{} is written: the shade of {} kinds of street canyons", path.display(), streets.len()))
 }

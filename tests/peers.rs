@@ -4,15 +4,16 @@
 #![expect(clippy::print_stdout, reason = "a test says why it is skipped, and how far apart the programs are")]
 
 use cabin::{
-    ComfortWindow, Cop, Design, Disturbances, Heating, PassengerViews, PmvModel, SolarGains, Vehicle, kelvin,
-    named_cooling_cops, named_heating_cops, place_passengers, predicted_percentage_dissatisfied,
+    ComfortWindow, Disturbances, Optimum, Outcome, PassengerViews, PmvModel, SolarGains, Vehicle, kelvin,
+    place_passengers, predicted_percentage_dissatisfied,
 };
 use chrono::{DateTime, Datelike};
 use ingest::irradiance::{closure, erbs};
 use solve::nlp::{DoorLaw, Effort, NlpSolver, VoteForm};
-use solve::{Grid, Optimum, Outcome, SampleSolver};
+use solve::{Grid, SampleSolver};
 use std::process::Command;
 use std::time::Instant;
+use testing::paper_designs;
 
 /// The lines that a script prints, or `None` where it cannot run.
 fn peer(script: &str, package: &str, arguments: &[String]) -> Option<Vec<Vec<String>>> {
@@ -146,27 +147,6 @@ fn xval_pvlib_sun_erbs_and_closure() {
     println!("largest difference from pvlib: altitude {altitude_off:.4}°, DNI {dni_off:.1e} W/m²");
 }
 
-fn designs() -> Vec<Design> {
-    let design = |name: &str, heating, radiant_heaters, air_curtain| Design {
-        name: name.to_owned(),
-        heating,
-        heating_cop: match heating {
-            Heating::Ptc => Cop::Constant(1.0),
-            Heating::HeatPump => named_heating_cops().swap_remove(0).1,
-        },
-        cooling_cop: named_cooling_cops().swap_remove(0).1,
-        radiant_heaters,
-        air_curtain,
-    };
-    vec![
-        design("ptc", Heating::Ptc, false, false),
-        design("ptc+rh", Heating::Ptc, true, false),
-        design("hp", Heating::HeatPump, false, false),
-        design("hp+rh", Heating::HeatPump, true, false),
-        design("hp+curtain", Heating::HeatPump, false, true),
-    ]
-}
-
 /// A year-like spread: incommensurable cycles of season, day, clouds and load.
 fn samples(count: usize) -> Vec<Disturbances> {
     let cycle = |i: usize, period: f64| 0.5 - 0.5 * (i as f64 * std::f64::consts::TAU / period).cos();
@@ -196,7 +176,7 @@ fn xval_casadi_ipopt_optima() {
     let views = PassengerViews::from_view_factors(&few);
     let limits = [0.0, 0.25, 0.5, 1.0, 1.5, 2.0];
     let windows = limits.iter().map(|&l| ComfortWindow::symmetric(l).expect("valid")).collect();
-    let grid = Grid::new(designs(), windows).expect("valid");
+    let grid = Grid::new(paper_designs(), windows).expect("valid");
     let samples = samples(300);
 
     let mut cases = String::new();
@@ -227,8 +207,7 @@ fn xval_casadi_ipopt_optima() {
     let Some(mut theirs) = peer("optima.py", "casadi", &arguments) else { return };
     let effort = numbers(&theirs.pop().expect("the script ends with its effort"));
 
-    let unsolved = Optimum { design: 0, window: 0, outcome: Outcome::NotConverged };
-    let mut optima = vec![unsolved; grid.points()];
+    let mut optima = vec![Optimum::UNSOLVED; grid.points()];
     let (mut compared, mut lost, mut largest_w) = (0, 0, 0.0_f64);
     let mut fast = SampleSolver::new(&vehicle, &views, &grid);
     for (d, rows) in samples.iter().zip(theirs.chunks(grid.points())) {
@@ -259,13 +238,13 @@ fn xval_casadi_ipopt_optima() {
     }
     let fast_s = begin.elapsed().as_secs_f64() / f64::from(rounds) / points as f64;
     let mut program = NlpSolver::new(&vehicle, &views, &grid, &VoteForm::Exact, DoorLaw::Exact);
-    let mut efforts = vec![Effort::default(); grid.points()];
+    let mut results = vec![(Optimum::UNSOLVED, Effort::default()); grid.points()];
     let begin = Instant::now();
     let (mut programs, mut subproblems) = (0, 0);
     for d in samples.iter().step_by(10) {
-        program.solve(d, &mut optima, &mut efforts);
-        programs += efforts.iter().map(|e| e.programs).sum::<u32>();
-        subproblems += efforts.iter().map(|e| e.subproblems).sum::<u32>();
+        program.solve(d, &mut results);
+        programs += results.iter().map(|(_, e)| e.programs).sum::<u32>();
+        subproblems += results.iter().map(|(_, e)| e.subproblems).sum::<u32>();
     }
     let program_s = begin.elapsed().as_secs_f64() / f64::from(programs);
     let each = f64::from(subproblems) / f64::from(programs);

@@ -1,23 +1,8 @@
 //! Verification from outside: a sound database passes, and a row that somebody has changed is found.
 
-#![expect(clippy::unwrap_used, reason = "a test ends where something is not as expected")]
-
 mod common;
 
 use common::Scratch;
-use sqlx::{Connection, SqliteConnection};
-
-/// Changes the database behind the program's back.
-fn tamper(scratch: &Scratch, sql: &'static str) {
-    let url = format!("sqlite://{}", scratch.path("study.db").display());
-    let runtime = tokio::runtime::Builder::new_current_thread().enable_time().build().unwrap();
-    runtime.block_on(async {
-        let mut connection = SqliteConnection::connect(&url).await.unwrap();
-        let done = sqlx::query(sql).execute(&mut connection).await.unwrap();
-        assert!(done.rows_affected() > 0, "{sql}");
-        connection.close().await.unwrap();
-    });
-}
 
 fn solved() -> Scratch {
     let scratch = Scratch::demo(4);
@@ -42,8 +27,7 @@ fn cli_a_sound_database_passes_and_the_result_is_stored() {
 #[test]
 fn cli_a_changed_row_is_found() {
     let scratch = solved();
-    tamper(
-        &scratch,
+    scratch.tamper(
         "UPDATE optimum_point SET air_unit_power_w = air_unit_power_w + 10 WHERE (sample_id, design_id, window_id) =
             (SELECT sample_id, design_id, window_id FROM optimum_point WHERE air_unit_power_w > 100 LIMIT 1)",
     );
@@ -52,8 +36,7 @@ fn cli_a_changed_row_is_found() {
     assert!(run.stdout.contains("violated: parts of the power from heat and COP"), "{}", run.stdout);
 
     let scratch = solved();
-    tamper(
-        &scratch,
+    scratch.tamper(
         "UPDATE optimum_point SET cabin_k = cabin_k + 0.01 WHERE (sample_id, design_id, window_id) =
             (SELECT sample_id, design_id, window_id FROM optimum_point LIMIT 1)",
     );
@@ -61,8 +44,7 @@ fn cli_a_changed_row_is_found() {
     assert!(run.stdout.contains("violated: five balances of the exact model"), "{}", run.stdout);
 
     let scratch = solved();
-    tamper(
-        &scratch,
+    scratch.tamper(
         "DELETE FROM optimum_point WHERE sample_id = (SELECT min(sample_id) FROM optimum_point) AND window_id = 1",
     );
     let run = scratch.expect(1, &["verify", "--fraction", "0"]);

@@ -187,28 +187,12 @@ impl<'a> Cabin<'a> {
     /// The surface balances, linearised at the given temperatures.
     pub(crate) fn linearise(&self, t: &Temperatures, heaters: Heaters) -> Linear {
         let system = System::new(self, t, heaters);
+        // Without the heaters' power; the cabin's own balance is the air unit's matter.
+        let [heater_w, interior_w, _, inside_w, outside_w] = self.flows(t, false, 0.0, 0.0).net_w();
         Linear {
-            shift_k: system.solve(self.surface_net_w(t)),
+            shift_k: system.solve([heater_w, interior_w, inside_w, outside_w]),
             slopes: system.solve([self.g_heater, self.g_interior, self.g_shell, 0.0]),
         }
-    }
-
-    /// Net heat into heaters (without their power), interior, inside and outside of the shell in W.
-    fn surface_net_w(&self, t: &Temperatures) -> [f64; 4] {
-        let [heater4, interior4, shell4] = [t.radiant_heater_k, t.interior_k, t.shell_inside_k].map(pow4);
-        let heater_interior = self.r_heater_interior * (heater4 - interior4);
-        let heater_shell = self.r_heater_shell * (heater4 - shell4);
-        let interior_shell = self.r_interior_shell * (interior4 - shell4);
-        let conduction = self.g_conduction * (t.shell_inside_k - t.shell_outside_k);
-        [
-            self.g_heater * (t.cabin_k - t.radiant_heater_k) - heater_interior - heater_shell,
-            self.solar.interior_w + heater_interior + self.g_interior * (t.cabin_k - t.interior_k) - interior_shell,
-            self.g_shell * (t.cabin_k - t.shell_inside_k) + self.solar.shell_inside_w + heater_shell + interior_shell
-                - conduction,
-            conduction + self.solar.shell_outside_w
-                - self.g_outside * (t.shell_outside_k - self.ambient_k)
-                - self.r_outside * (pow4(t.shell_outside_k) - pow4(self.ambient_k)),
-        ]
     }
 }
 

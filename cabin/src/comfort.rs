@@ -1,4 +1,4 @@
-//! The mean vote of the passengers, and how it follows the cabin temperature.
+//! The mean vote of the passengers, and its slope over the cabin temperature.
 
 use crate::balance::{Linear, pow4};
 use crate::{Cabin, StandardRange, Temperatures, ZERO_CELSIUS_K};
@@ -22,19 +22,19 @@ impl Passenger {
     }
 
     /// Moves the clothing along its line; returns the length of the move in K.
-    pub fn follow(&mut self, cabin_step_k: f64) -> f64 {
+    pub fn step(&mut self, cabin_step_k: f64) -> f64 {
         let step_k = self.shift_k + self.slope * cabin_step_k;
         self.surface_k += step_k;
         step_k.abs()
     }
 }
 
-/// The clothing of the two passengers of the quadrature, followed through time.
+/// The clothing of the two passengers of the quadrature, stepped through time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Clothes([Passenger; 2]);
 
-/// Surfaces that stand still.
-const STILL: Linear = Linear { shift_k: [0.0; 4], slopes: [0.0; 4] };
+/// Surfaces held at their temperatures.
+const HELD: Linear = Linear { shift_k: [0.0; 4], slopes: [0.0; 4] };
 
 impl Cabin<'_> {
     /// Clothing that is settled at the given temperatures.
@@ -43,17 +43,17 @@ impl Cabin<'_> {
         let mut clothes =
             Clothes(self.views.nodes().map(|(view, weight)| Passenger::new(view, weight, t.cabin_k + 5.0)));
         for _ in 0..20 {
-            self.follow_vote(t, &mut clothes);
+            self.step_vote(t, &mut clothes);
         }
         clothes
     }
 
     /// Mean vote of the passengers at temperatures that change slowly: one Newton step of each clothing from where it was,
     /// which is good to 1e-5 votes where the surfaces have moved by some hundredths of a kelvin.
-    pub fn follow_vote(&self, t: &Temperatures, clothes: &mut Clothes) -> f64 {
-        let (vote, _) = self.vote_line(t, &STILL, &mut clothes.0);
+    pub fn step_vote(&self, t: &Temperatures, clothes: &mut Clothes) -> f64 {
+        let (vote, _) = self.vote_line(t, &HELD, &mut clothes.0);
         for passenger in &mut clothes.0 {
-            passenger.follow(0.0);
+            passenger.step(0.0);
         }
         vote
     }

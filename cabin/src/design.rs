@@ -1,6 +1,6 @@
 //! What HVAC equipment a bus has.
 
-use crate::Cop;
+use crate::{Cop, Devices};
 
 /// How the air is heated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -9,6 +9,23 @@ pub enum Heating {
     Ptc,
     /// Heat pump.
     HeatPump,
+}
+
+impl Heating {
+    /// The word in study files and in the database.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Ptc => "ptc",
+            Self::HeatPump => "hp",
+        }
+    }
+
+    /// The heating of a word.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        [Self::Ptc, Self::HeatPump].into_iter().find(|h| h.name() == name)
+    }
 }
 
 /// One HVAC design. Every design has air conditioning.
@@ -22,8 +39,6 @@ pub struct Design {
     pub heating_cop: Cop,
     /// COP in cooling over the lift `T_amb − T_cab`.
     pub cooling_cop: Cop,
-    /// Whether radiant heaters are on board.
-    pub radiant_heaters: bool,
-    /// Whether air curtains are on board.
-    pub air_curtain: bool,
+    /// The devices on board.
+    pub devices: Devices,
 }

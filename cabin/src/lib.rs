@@ -5,17 +5,22 @@
 //! Practice 2025, 106158), called *the paper* here; equations are cited by their label in its source. Temperatures are
 //! in kelvin, heat flows in watt, positive in the direction that their name says.
 //!
-//! The vocabulary of the whole program lives here too: [`Disturbances`] of a sample, a [`Design`], a [`ComfortWindow`].
+//! The vocabulary of the whole program lives here too: [`Disturbances`] of a sample, a [`Design`] with its [`Devices`], a
+//! [`ComfortWindow`], the [`Operation`] that is found for them, and the [`Outcome`] of looking for one.
 
 mod balance;
 mod clothing;
 mod comfort;
 mod cop;
 mod design;
+mod devices;
 mod disturbances;
 mod flows;
+mod load;
+mod operation;
 mod passengers;
 mod pmv;
+mod random;
 mod solar;
 mod state;
 mod vehicle;
@@ -27,12 +32,16 @@ pub use clothing::clothing_insulation_clo;
 pub use comfort::Clothes;
 pub use cop::{Cop, CopError, named_cooling_cops, named_heating_cops};
 pub use design::{Design, Heating};
+pub use devices::Devices;
 pub use disturbances::{Disturbances, DisturbancesError};
 pub use flows::{HeatFlows, Slopes, Temperatures};
+pub use load::LoadChange;
+pub use operation::{Candidate, Infeasible, OperatingMode, Operation, Optimum, Outcome};
 pub use passengers::{Panel, PassengerViews, ceiling_panels, panel_view_factor, place_passengers};
 pub use pmv::{PmvModel, PmvPoint, StandardRange, predicted_percentage_dissatisfied, water_vapour_pressure_pa};
+pub use random::unit_interval;
 pub use solar::{SolarGains, roof_irradiance_w_m2, wall_irradiance_w_m2};
-pub use state::{Aim, State};
+pub use state::{State, Target};
 pub use vehicle::{Vehicle, VehicleError};
 pub use window::{ComfortWindow, WindowError};
 

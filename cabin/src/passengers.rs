@@ -4,6 +4,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
 use crate::Vehicle;
+use crate::random::unit_interval;
 use crate::view_factor::{parallel, perpendicular};
 
 /// A radiant heater on the ceiling: its extent along and across the bus in m.
@@ -86,8 +87,7 @@ pub fn place_passengers(vehicle: &Vehicle) -> Vec<f64> {
     let mut random = ChaCha8Rng::seed_from_u64(vehicle.passenger_seed);
     let half = vehicle.passenger_width_m / 2.0;
     let mut within = |extent_m: f64| {
-        // 53 random bits make a uniform number in [0, 1).
-        let unit = (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
+        let unit = unit_interval(random.next_u64());
         half + unit * (extent_m - 2.0 * half)
     };
     (0..vehicle.passenger_placements)

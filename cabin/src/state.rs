@@ -2,14 +2,14 @@
 //!
 //! Unknowns are the temperatures of cabin and surfaces and the clothing temperature of the passengers. A step linearises
 //! the balances and the clothing's heat balance, which makes everything follow the cabin temperature along a line; the
-//! [`Aim`] then says how far along it to go. No clothing iteration and no balance iteration is nested in another.
+//! [`Target`] then says how far along it to go. No clothing iteration and no balance iteration is nested in another.
 
 use crate::comfort::Passenger;
 use crate::{Cabin, Heaters, Slopes, Temperatures};
 
 /// What a steady state has to fulfil besides the surface balances.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Aim {
+pub enum Target {
     /// A cabin temperature in K.
     CabinTemperature(f64),
     /// No heat from the air unit, with the air curtains on or off.
@@ -63,43 +63,43 @@ impl Cabin<'_> {
         State { temperatures, slopes, pmv: 0.0, pmv_slope: 0.0, gauss }
     }
 
-    /// The steady state that fulfils an aim, from a guess. The panels are off, or held at their target.
+    /// The steady state that fulfils a target, from a guess. The panels are off, or held at their target.
     ///
     /// `None` where the iteration does not settle, which no physical input has been seen to cause.
     #[must_use]
-    pub fn state(&self, aim: Aim, heaters: Heaters, guess: &State) -> Option<State> {
+    pub fn state(&self, target: Target, heaters: Heaters, guess: &State) -> Option<State> {
         let mut state = *guess;
-        if let Aim::CabinTemperature(cabin_k) = aim {
+        if let Target::CabinTemperature(cabin_k) = target {
             state.temperatures.cabin_k = cabin_k;
         }
         if heaters == Heaters::On {
             state.temperatures.radiant_heater_k = self.heater_target_k;
         }
         let mut gauss = state.gauss;
-        self.settle(&mut state, &mut gauss, heaters, aim)?;
+        self.settle(&mut state, &mut gauss, heaters, target)?;
         state.gauss = gauss;
         // The kink moves a little as the state settles on the split quadrature.
         for _ in 0..2 {
             let Some(view) = self.kink_view(&state.temperatures, &gauss) else { break };
             let mut split = self.split(view, &gauss);
-            self.settle(&mut state, &mut split, heaters, aim)?;
+            self.settle(&mut state, &mut split, heaters, target)?;
         }
         Some(state)
     }
 
-    fn settle(&self, state: &mut State, passengers: &mut [Passenger], heaters: Heaters, aim: Aim) -> Option<()> {
-        (0..MOST_STEPS).find(|_| self.step(state, passengers, heaters, aim) < SETTLED_K).map(|_| ())
+    fn settle(&self, state: &mut State, passengers: &mut [Passenger], heaters: Heaters, target: Target) -> Option<()> {
+        (0..MOST_STEPS).find(|_| self.step(state, passengers, heaters, target) < SETTLED_K).map(|_| ())
     }
 
     /// One Newton step; returns the largest change of a temperature in K.
-    fn step(&self, state: &mut State, passengers: &mut [Passenger], heaters: Heaters, aim: Aim) -> f64 {
+    fn step(&self, state: &mut State, passengers: &mut [Passenger], heaters: Heaters, target: Target) -> f64 {
         let linear = self.linearise(&state.temperatures, heaters);
         let slopes = linear.named_slopes();
         let (pmv, pmv_slope) = self.vote_line(&state.temperatures, &linear, passengers);
-        let cabin_step_k = match aim {
-            Aim::CabinTemperature(_) => 0.0,
-            Aim::Vote(vote) => (vote - pmv) / pmv_slope,
-            Aim::Passive { curtain } => {
+        let cabin_step_k = match target {
+            Target::CabinTemperature(_) => 0.0,
+            Target::Vote(vote) => (vote - pmv) / pmv_slope,
+            Target::Passive { curtain } => {
                 let (heat_w, slope_w_k) = self.air_unit_heat_w(&state.temperatures, &slopes, curtain);
                 let [heater_k, interior_k, inside_k, _] = linear.shift_k;
                 let shift_w = self.g_heater * heater_k + self.g_interior * interior_k + self.g_shell * inside_k;
@@ -118,7 +118,7 @@ impl Cabin<'_> {
         let mut largest_k = cabin_step_k.abs().max(interior_k.abs()).max(inside_k.abs());
         largest_k = largest_k.max(outside_k.abs()).max(heater_k.abs());
         for passenger in passengers {
-            largest_k = largest_k.max(passenger.follow(cabin_step_k));
+            largest_k = largest_k.max(passenger.step(cabin_step_k));
         }
         state.slopes = slopes;
         state.pmv = pmv + pmv_slope * cabin_step_k;
@@ -131,7 +131,7 @@ impl State {
     /// A guess of the state with the vote `pmv`, extrapolated from this state and, where there is one, the state before it
     /// on the way: Hermite's cubic through both with their slopes, or the tangent.
     #[must_use]
-    pub fn toward(&self, pmv: f64, before: Option<&Self>) -> Self {
+    pub fn extrapolate(&self, pmv: f64, before: Option<&Self>) -> Self {
         let step = pmv - self.pmv;
         let last = self.unknowns();
         let values = match before {

@@ -51,6 +51,12 @@ impl ComfortWindow {
         self.pmv_max
     }
 
+    /// Whether it is `[-L, L]`.
+    #[must_use]
+    pub fn is_symmetric(&self) -> bool {
+        self.pmv_min == -self.pmv_max
+    }
+
     /// The larger distance of a limit from neutral; for `[-L, L]` it is `L`.
     #[must_use]
     pub fn pmv_limit(&self) -> f64 {

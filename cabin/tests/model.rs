@@ -1,7 +1,7 @@
 //! Properties of the balances, the door law and the COP curves.
 
 use cabin::{
-    Aim, Cabin, Cop, CopError, Disturbances, Heaters, PassengerViews, State, Temperatures, Vehicle, kelvin,
+    Cabin, Cop, CopError, Disturbances, Heaters, PassengerViews, State, Target, Temperatures, Vehicle, kelvin,
     named_cooling_cops, named_heating_cops, place_passengers,
 };
 use proptest::prelude::*;
@@ -42,7 +42,7 @@ fn prop_a_dark_empty_closed_bus_is_as_cold_as_the_night() {
     let cabin = Cabin::new(&vehicle, &views, &night(-5.0, 0.2));
     let ambient = kelvin(-5.0);
     let State { temperatures: t, slopes, .. } =
-        cabin.state(Aim::CabinTemperature(ambient), Heaters::Off, &cabin.rough_state(300.0)).expect("settles");
+        cabin.state(Target::CabinTemperature(ambient), Heaters::Off, &cabin.rough_state(300.0)).expect("settles");
     for k in [t.interior_k, t.shell_inside_k, t.shell_outside_k, t.radiant_heater_k] {
         assert!((k - ambient).abs() < 1e-9, "{t:?}");
     }
@@ -102,7 +102,7 @@ proptest! {
         let heaters = if on { Heaters::On } else { Heaters::Off };
         let settle = |cabin_c: f64| {
             let k = kelvin(cabin_c);
-            cabin.state(Aim::CabinTemperature(k), heaters, &cabin.rough_state(k)).expect("settles")
+            cabin.state(Target::CabinTemperature(k), heaters, &cabin.rough_state(k)).expect("settles")
         };
         let State { temperatures: t, slopes, pmv, pmv_slope, .. } = settle(cabin_c);
         let (heat_w, heat_slope) = cabin.air_unit_heat_w(&t, &slopes, curtain);
@@ -132,17 +132,17 @@ proptest! {
         let cabin = Cabin::new(&vehicle, &views, &d);
         let heaters = if on { Heaters::On } else { Heaters::Off };
         let cabin_k = kelvin(cabin_c);
-        let state = cabin.state(Aim::CabinTemperature(cabin_k), heaters, &cabin.rough_state(cabin_k)).expect("settles");
+        let state = cabin.state(Target::CabinTemperature(cabin_k), heaters, &cabin.rough_state(cabin_k)).expect("settles");
         let mean = |t: &Temperatures| placed.iter().map(|&v| cabin.passenger_pmv(t, v)).sum::<f64>() / placed.len() as f64;
         let full = mean(&state.temperatures);
         prop_assert!((full - state.pmv).abs() < 1e-8, "{full} {}", state.pmv);
 
         // The states of a vote and without heat are the same states, met from the other side.
         let near = cabin.rough_state(cabin_k + 8.0);
-        let vote = cabin.state(Aim::Vote(full), heaters, &near).expect("settles");
+        let vote = cabin.state(Target::Vote(full), heaters, &near).expect("settles");
         prop_assert!((vote.temperatures.cabin_k - cabin_k).abs() < 1e-6, "{vote:?} {cabin_k}");
         prop_assert!((mean(&vote.temperatures) - full).abs() < 1e-8);
-        let passive = cabin.state(Aim::Passive { curtain: on }, heaters, &near).expect("settles");
+        let passive = cabin.state(Target::Passive { curtain: on }, heaters, &near).expect("settles");
         let (heat_w, _) = cabin.air_unit_heat_w(&passive.temperatures, &passive.slopes, on);
         prop_assert!(heat_w.abs() < 1e-6, "{heat_w}");
         prop_assert!((mean(&passive.temperatures) - passive.pmv).abs() < 1e-8);

@@ -4,7 +4,7 @@
 //! label's last place plus what half a unit of every input label makes of it.
 
 use cabin::{
-    Aim, Cabin, Disturbances, Heaters, PassengerViews, SolarGains, Vehicle, celsius, clothing_insulation_clo, kelvin,
+    Cabin, Disturbances, Heaters, PassengerViews, SolarGains, Target, Vehicle, celsius, clothing_insulation_clo, kelvin,
 };
 
 /// Ambient and cabin temperature in °C, passengers, door flow in kW, solar gains of interior, inside and outside in kW.
@@ -33,7 +33,7 @@ fn labels(inputs: Inputs) -> Vec<(&'static str, f64)> {
     };
     let settle = |cabin: &Cabin| {
         let cabin_k = kelvin(cabin_c);
-        cabin.state(Aim::CabinTemperature(cabin_k), Heaters::Off, &cabin.rough_state(cabin_k)).expect("settles")
+        cabin.state(Target::CabinTemperature(cabin_k), Heaters::Off, &cabin.rough_state(cabin_k)).expect("settles")
     };
     // The figures give the door flow; the open fraction follows, since the flow is proportional to it.
     let cabin = Cabin::with_solar_gains(&vehicle, &views, &disturbances(1.0), gains);

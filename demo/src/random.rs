@@ -1,5 +1,6 @@
 //! Random numbers that are the same on every machine.
 
+use cabin::unit_interval;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use std::f64::consts::TAU;
@@ -16,9 +17,7 @@ impl Random {
 
     /// Uniform in `low … high`.
     pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
-        // The upper 53 bits fill the fraction of an f64.
-        let unit = (self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
-        low + (high - low) * unit
+        low + (high - low) * unit_interval(self.0.next_u64())
     }
 
     pub(crate) fn chance(&mut self, probability: f64) -> bool {

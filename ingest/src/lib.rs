@@ -6,12 +6,10 @@
 //! - [`mission`]: ZTBus missions at 1 Hz, from a folder, a glob, or an archive → [`mission::Segment`]
 //! - [`weather`]: station files and reference years → [`weather::Weather`], which knows its mean over any segment
 //! - [`sample`]: both together, with sun and shade → [`sample::Sample`]
-//! - [`weight`]: how much a sample counts in the year
 //!
 //! Nothing depends on the order of files or on the number of threads.
 
 mod files;
-mod in_order;
 pub mod irradiance;
 pub mod mission;
 mod quality;
@@ -19,11 +17,8 @@ pub mod sample;
 mod segments;
 mod telemetry;
 pub mod weather;
-mod weather_files;
-pub mod weight;
 
 pub use files::Content;
-pub use in_order::in_order;
 pub use quality::{ExcludedSegment, ExclusionReason, FileKind, FileRecord, Finding, FindingKind};
 
 use std::path::PathBuf;

@@ -1,5 +1,6 @@
 //! ZTBus missions: where they are found, and what their telemetry says of each segment.
 
+use cabin::LoadChange;
 use chrono::{DateTime, NaiveDateTime, TimeDelta, Utc};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -65,6 +66,8 @@ pub struct MissionOptions {
 pub struct Segment {
     /// Name of the mission.
     pub mission: String,
+    /// Path of its file, as the study names it.
+    pub source_path: String,
     /// Number of the bus.
     pub bus: u32,
     /// Number of the segment, from 0.
@@ -93,18 +96,7 @@ pub struct MissionReading {
     /// Segments that its telemetry cannot fill.
     pub excluded: Vec<ExcludedSegment>,
     /// How passengers and doors change, in the order of time; before the first the bus is empty and closed.
-    pub loads: Vec<Load>,
-}
-
-/// From a second of the mission on, so many passengers are on board and a door is open or not.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Load {
-    /// Second since the start of the mission.
-    pub second: u32,
-    /// Passengers on board.
-    pub passengers: f64,
-    /// Whether at least one door is open.
-    pub door_open: bool,
+    pub loads: Vec<LoadChange>,
 }
 
 /// Finds missions in a folder, a glob, one file or a `.zip`, relative to `base`. No `buses` means all of them.
@@ -321,6 +313,7 @@ fn segments(
         match (reason, sums.rows) {
             (None, Some((first, last))) => kept.push(Segment {
                 mission: source.name.clone(),
+                source_path: source.path.clone(),
                 bus: source.bus,
                 segment: number as u32,
                 start,
@@ -332,9 +325,11 @@ fn segments(
             }),
             (reason, _) => excluded.push(ExcludedSegment {
                 mission: source.name.clone(),
+                bus: source.bus,
                 segment: number as u32,
                 start,
-                reason: reason.unwrap_or(ExclusionReason::TelemetryGap),
+                duration_s: duration_s as u32,
+                reason: reason.unwrap_or(ExclusionReason::TelemetryGap).to_string(),
             }),
         }
     }
@@ -380,7 +375,7 @@ struct Reader {
     notes: Notes,
     /// First and last second that has a row.
     span: Option<(i64, i64)>,
-    loads: Vec<Load>,
+    loads: Vec<LoadChange>,
 }
 
 impl Reader {
@@ -429,7 +424,7 @@ impl Reader {
         }
         if state != self.adder.state() {
             let second = (time_s - self.clock.start_s) as u32;
-            self.loads.push(Load { second, passengers: state.passengers, door_open: state.door_open });
+            self.loads.push(LoadChange { second, passengers: state.passengers, door_open: state.door_open });
         }
         self.adder.add(i, time_s, state);
         self.span = Some((self.span.map_or(time_s, |(first, _)| first), time_s));

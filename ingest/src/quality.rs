@@ -15,6 +15,12 @@ pub enum FileKind {
 }
 
 impl FileKind {
+    /// The kind of a name.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        [Self::Mission, Self::Weather, Self::Shadow].into_iter().find(|kind| kind.name() == name)
+    }
+
     /// The name in the database.
     #[must_use]
     pub fn name(self) -> &'static str {
@@ -68,6 +74,34 @@ pub enum FindingKind {
 }
 
 impl FindingKind {
+    /// All of them.
+    pub const ALL: [Self; 18] = [
+        Self::Unreadable,
+        Self::Empty,
+        Self::WrongEncoding,
+        Self::WrongDelimiter,
+        Self::MissingColumn,
+        Self::NotAMission,
+        Self::UnsafePath,
+        Self::Overlap,
+        Self::RefusedRow,
+        Self::RefusedValue,
+        Self::OutOfRange,
+        Self::WrongUnit,
+        Self::MissingValue,
+        Self::NegativeOffset,
+        Self::DuplicateRow,
+        Self::TimeGap,
+        Self::Interpolated,
+        Self::Truncated,
+    ];
+
+    /// The kind of a name.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|kind| kind.name() == name)
+    }
+
     /// The name in the database.
     #[must_use]
     pub fn name(self) -> &'static str {
@@ -227,10 +261,14 @@ impl fmt::Display for ExclusionReason {
 pub struct ExcludedSegment {
     /// Name of the mission.
     pub mission: String,
+    /// Number of the bus.
+    pub bus: u32,
     /// Number of the segment, from 0.
     pub segment: u32,
     /// Its start.
     pub start: DateTime<Utc>,
-    /// Why.
-    pub reason: ExclusionReason,
+    /// Its length in s.
+    pub duration_s: u32,
+    /// Why, as an [`ExclusionReason`] or a check of the model says it.
+    pub reason: String,
 }

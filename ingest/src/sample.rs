@@ -1,73 +1,105 @@
 //! Hourly samples: a segment of a mission with its weather, sun and shade.
 
+use cabin::Disturbances;
 use chrono::{DateTime, Datelike, TimeDelta, Utc};
 use chrono_tz::Tz;
 use shading::{ShadowYear, Site};
 
+use crate::ExcludedSegment;
 use crate::mission::Segment;
 use crate::weather::Weather;
-use crate::{ExcludedSegment, ExclusionReason};
+
+/// Version of the join: it changes whenever a sample would come out differently.
+const SAMPLE_VERSION: u32 = 1;
 
 /// Disturbances of one segment, and where they come from.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sample {
     /// Bus × 10¹⁰ + start in seconds since 1970: a bus is at one place at a time.
     pub id: i64,
-    /// The segment: mission, start, passengers, doors, lines of the file.
+    /// The segment: mission, start, lines of the file.
     pub segment: Segment,
     /// Local month, 1 … 12.
     pub month: u8,
-    /// Mean ambient temperature in K.
-    pub ambient_temperature_k: f64,
-    /// Mean direct normal irradiance in W/m².
-    pub dni_w_m2: f64,
-    /// Mean diffuse horizontal irradiance in W/m².
-    pub dhi_w_m2: f64,
-    /// Solar altitude in the middle of the segment, in rad.
-    pub solar_altitude_rad: f64,
+    /// Means over the segment; the sun stands where it stands in its middle.
+    pub disturbances: Disturbances,
     /// Solar azimuth in the middle of the segment, in rad from north.
     pub solar_azimuth_rad: f64,
-    /// Mean shadow fraction.
-    pub shadow_fraction: f64,
     /// Seconds whose weather is interpolated.
     pub interpolated_s: f64,
+    /// What the sample was made from, as a hash: the reading of its mission, weather and shade of its hours, place and time zone.
+    pub key: String,
 }
 
-/// The sample of a segment.
-///
-/// # Errors
-/// Why the segment gives none.
-pub fn assemble(
-    segment: Segment,
-    weather: &Weather,
-    site: &Site,
-    shadow: &ShadowYear,
-    zone: Tz,
-) -> Result<Sample, ExcludedSegment> {
-    let length = TimeDelta::seconds(i64::from(segment.duration_s));
-    let (start, end) = (segment.start, segment.start + length);
-    match weather.mean(start, end) {
-        Ok(mean) => {
-            let sun = site.sun(start + length / 2);
-            Ok(Sample {
-                id: sample_id(segment.bus, start),
-                month: start.with_timezone(&zone).month() as u8,
-                ambient_temperature_k: mean.ambient_temperature_k,
-                dni_w_m2: mean.dni_w_m2,
-                dhi_w_m2: mean.dhi_w_m2,
-                solar_altitude_rad: sun.altitude_rad,
-                solar_azimuth_rad: sun.azimuth_rad,
-                shadow_fraction: shadow.mean(start, end),
-                interpolated_s: mean.interpolated_s,
-                segment,
-            })
+/// What segments are joined with.
+#[derive(Debug, Clone, Copy)]
+pub struct Surroundings<'a> {
+    /// Weather.
+    pub weather: &'a Weather,
+    /// Shade.
+    pub shadow: &'a ShadowYear,
+    /// Where the sun is looked up.
+    pub site: &'a Site,
+    /// Whose months count.
+    pub zone: Tz,
+}
+
+impl Surroundings<'_> {
+    /// The sample of a segment, from a mission whose reading has a key.
+    ///
+    /// # Errors
+    /// The segment with the reason why it gives none.
+    pub fn sample(&self, segment: Segment, reading_key: &str) -> Result<Sample, ExcludedSegment> {
+        let length = TimeDelta::seconds(i64::from(segment.duration_s));
+        let (start, end) = (segment.start, segment.start + length);
+        let mean = match self.weather.mean(start, end) {
+            Ok(mean) => mean,
+            Err(reason) => return Err(excluded(segment, reason.to_string())),
+        };
+        let sun = self.site.sun(start + length / 2);
+        let disturbances = Disturbances {
+            ambient_temperature_k: mean.ambient_temperature_k,
+            dni_w_m2: mean.dni_w_m2,
+            dhi_w_m2: mean.dhi_w_m2,
+            solar_altitude_rad: sun.altitude_rad,
+            shadow_fraction: self.shadow.mean(start, end),
+            passengers: segment.passengers,
+            door_open_fraction: segment.door_open_fraction,
+        };
+        if let Err(error) = disturbances.check() {
+            return Err(excluded(segment, error.to_string()));
         }
-        Err(reason) => Err(excluded(segment, reason)),
+        Ok(Sample {
+            id: sample_id(segment.bus, start),
+            month: start.with_timezone(&self.zone).month() as u8,
+            disturbances,
+            solar_azimuth_rad: sun.azimuth_rad,
+            interpolated_s: mean.interpolated_s,
+            key: self.key(&segment, reading_key, start, end),
+            segment,
+        })
+    }
+
+    fn key(&self, segment: &Segment, reading_key: &str, start: DateTime<Utc>, end: DateTime<Utc>) -> String {
+        let mut hasher = blake3::Hasher::new();
+        hasher.update(reading_key.as_bytes());
+        hasher.update(self.weather.key(start, end, 0).as_bytes());
+        hasher.update(self.shadow.key(start, end).as_bytes());
+        let place = format!("{} {:?} {} {SAMPLE_VERSION}", segment.segment, self.site, self.zone);
+        hasher.update(place.as_bytes());
+        hasher.finalize().to_hex().to_string()
     }
 }
 
-fn excluded(segment: Segment, reason: ExclusionReason) -> ExcludedSegment {
-    ExcludedSegment { mission: segment.mission, segment: segment.segment, start: segment.start, reason }
+fn excluded(segment: Segment, reason: String) -> ExcludedSegment {
+    ExcludedSegment {
+        mission: segment.mission,
+        bus: segment.bus,
+        segment: segment.segment,
+        start: segment.start,
+        duration_s: segment.duration_s,
+        reason,
+    }
 }
 
 /// Bus × 10¹⁰ + start in seconds since 1970.

@@ -77,7 +77,7 @@ fn prop_counts_hold_and_doors_are_shared() {
     assert!((reading.segments[1].passengers - 30.0).abs() < 1e-12);
     assert_eq!((reading.segments[1].first_line, reading.segments[1].last_line), (3602, 7201));
     assert_eq!(reading.excluded.len(), 1);
-    assert_eq!(reading.excluded[0].reason, ExclusionReason::Partial { segment_s: 3600 });
+    assert_eq!(reading.excluded[0].reason, ExclusionReason::Partial { segment_s: 3600 }.to_string());
 }
 
 #[test]
@@ -107,8 +107,13 @@ fn prop_an_archive_gives_what_the_folder_gives() {
     zip.start_file("ZTBus/metaData.csv", options).unwrap();
     zip.write_all(b"name,busNumber\r\n").unwrap();
     zip.finish().unwrap();
-    let archived = read_folder(dir.path(), &OPTIONS).remove(0);
-    assert_eq!(archived.file.path, format!("ZTBus.zip!ZTBus/{NAME}"));
+    let mut archived = read_folder(dir.path(), &OPTIONS).remove(0);
+    let path = format!("ZTBus.zip!ZTBus/{NAME}");
+    assert_eq!(archived.file.path, path);
+    for segment in &mut archived.segments {
+        assert_eq!(segment.source_path, path);
+        NAME.clone_into(&mut segment.source_path);
+    }
     assert_eq!(archived.segments, read_bytes(&file(&rows(), "\r\n"), &OPTIONS).segments);
 }
 
@@ -178,8 +183,9 @@ fn cli_a_truncated_file_keeps_its_whole_segments() {
     let truncated = finding(&reading, FindingKind::Truncated);
     assert!(truncated.message.contains("4000 s"), "{}", truncated.message);
     assert_eq!(finding(&reading, FindingKind::RefusedRow).line, Some(5002));
-    let reasons: Vec<_> = reading.excluded.iter().map(|e| e.reason).collect();
-    assert_eq!(reasons, [ExclusionReason::TelemetryGap, ExclusionReason::Partial { segment_s: 3600 }]);
+    let reasons: Vec<_> = reading.excluded.iter().map(|e| e.reason.as_str()).collect();
+    let expected = [ExclusionReason::TelemetryGap, ExclusionReason::Partial { segment_s: 3600 }];
+    assert_eq!(reasons, expected.map(|r| r.to_string()));
 }
 
 #[test]

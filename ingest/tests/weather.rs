@@ -5,7 +5,6 @@
 use chrono::{DateTime, TimeDelta, TimeZone, Utc};
 use ingest::irradiance::{BeamAndDiffuse, closure, erbs, extraterrestrial_w_m2};
 use ingest::weather::{ColumnMap, IrradianceSplit, TimeLabel, Weather, WeatherFormat, WeatherOptions, discover, read};
-use ingest::weight::{MONTH_DAYS, month_weights};
 use ingest::{ExclusionReason, FileRecord, FindingKind, IngestError};
 use proptest::prelude::*;
 use shading::Site;
@@ -247,23 +246,6 @@ proptest! {
             prop_assert!((dni_w_m2 * altitude.sin().max(0.0) + dhi_w_m2 - ghi).abs() < 1e-9);
         }
     }
-
-    #[test]
-    fn prop_weights_sum_to_one(counts in prop::array::uniform12(0_u64..1000)) {
-        let weights = month_weights(&counts);
-        let sum: f64 = counts.iter().zip(weights.sample_weight).map(|(&n, w)| n as f64 * w).sum();
-        if counts.iter().any(|&n| n > 0) {
-            prop_assert!((sum - 1.0).abs() < 1e-12);
-        }
-        prop_assert_eq!(weights.missing.len(), counts.iter().filter(|&&n| n == 0).count());
-    }
-}
-
-#[test]
-fn paper_weights_of_a_full_year_are_days_over_365_and_samples() {
-    let weights = month_weights(&[325, 250, 700, 520, 1080, 620, 920, 930, 800, 1089, 795, 499]);
-    assert!((weights.sample_weight[0] - 31.0 / 365.0 / 325.0).abs() < 1e-15);
-    assert_eq!(MONTH_DAYS.iter().sum::<u32>(), 365);
 }
 
 #[test]

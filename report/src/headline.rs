@@ -3,26 +3,19 @@
 use std::fmt::Write as _;
 
 use crate::numbers::{percent, watts, window};
-use crate::{StudyReport, Verdict, paper_findings};
+use crate::section::{Verdict, paper_findings};
+use crate::study_report::{SHOWN_LIMIT, StudyReport};
 
-/// The window that single-window tables show, where the study has it.
-const SHOWN: (f64, f64) = (-1.0, 1.0);
-/// A stricter window to compare with it.
-const STRICTER: (f64, f64) = (-0.5, 0.5);
-
-/// The window that stands for the study where only one is shown.
-pub(crate) fn shown_window(study: &StudyReport) -> Option<(f64, f64)> {
-    let windows = study.windows();
-    if windows.contains(&SHOWN) { Some(SHOWN) } else { windows.get(windows.len() / 2).copied() }
-}
+/// The limit of a stricter window to compare with ±1.
+const STRICTER: f64 = 0.5;
 
 /// Up to three lines: the cheapest design, what binds, and how the paper's findings compare. None without optima.
 #[must_use]
 pub fn headline(study: &StudyReport) -> Vec<String> {
     let Some(answer) = answer(study) else { return Vec::new() };
     let mut lines = vec![answer];
-    let shown = shown_window(study);
-    let binding = study.limit_shares.iter().rev().find(|s| Some((s.pmv_min, s.pmv_max)) == shown && s.solved_count > 0);
+    let shown = study.shown_window();
+    let binding = study.limit_shares.iter().rev().find(|s| Some(s.window) == shown && s.solved_count > 0);
     if let (Some(s), Some(shown)) = (binding, shown) {
         let share = |count: u64| percent(Some(count as f64 / s.solved_count as f64));
         lines.push(format!(
@@ -45,7 +38,7 @@ pub fn headline(study: &StudyReport) -> Vec<String> {
 
 /// The question of the study, answered in two sentences.
 pub(crate) fn answer(study: &StudyReport) -> Option<String> {
-    let shown = shown_window(study)?;
+    let shown = study.shown_window()?;
     let power = |d: &str, w| study.annual_power_w(d, w);
     let cheapest = study
         .designs
@@ -64,11 +57,15 @@ pub(crate) fn answer(study: &StudyReport) -> Option<String> {
         }
         _ => text.push('.'),
     }
-    if let Some(stricter) = power(cheapest.0, STRICTER).filter(|_| shown == SHOWN) {
+    let stricter = study.windows().into_iter().find(|w| w.is_symmetric() && w.pmv_limit() == STRICTER);
+    if let Some((window_of, stricter)) = stricter
+        .filter(|_| shown.is_symmetric() && shown.pmv_limit() == SHOWN_LIMIT)
+        .and_then(|w| Some((w, power(cheapest.0, w)?)))
+    {
         let _ = write!(
             text,
             " Comfort within PMV {} costs {} W more.",
-            window(STRICTER),
+            window(window_of),
             watts(Some(stricter - cheapest.1))
         );
     }

@@ -1,14 +1,34 @@
 //! Numbers as text, always the same way.
 
+use cabin::ComfortWindow;
+use chrono::{DateTime, SecondsFormat, Utc};
+
 /// `-0.5 … 0.7`, or `±1` for a symmetric window, `0` for neutral.
-pub(crate) fn window((pmv_min, pmv_max): (f64, f64)) -> String {
+pub(crate) fn window(window: ComfortWindow) -> String {
+    let (pmv_min, pmv_max) = (window.pmv_min(), window.pmv_max());
     if pmv_min == 0.0 && pmv_max == 0.0 {
         "0".to_owned()
-    } else if pmv_min == -pmv_max {
+    } else if window.is_symmetric() {
         format!("±{pmv_max}")
     } else {
         format!("{pmv_min} … {pmv_max}")
     }
+}
+
+/// A time as tables have it.
+pub(crate) fn time(time: DateTime<Utc>) -> String {
+    time.to_rfc3339_opts(SecondsFormat::Secs, true)
+}
+
+/// A number with every digit, or nothing.
+pub(crate) fn optional(value: Option<f64>) -> String {
+    value.map(|v| v.to_string()).unwrap_or_default()
+}
+
+/// Text from outside in a table of data: a spreadsheet must not take it for a formula.
+pub(crate) fn text(cell: &str) -> String {
+    let formula = cell.starts_with(['=', '+', '-', '@', '\t', '\r']);
+    if formula { format!("'{cell}") } else { cell.to_owned() }
 }
 
 /// Watts without decimals, `–` where there are none.
@@ -30,6 +50,11 @@ pub(crate) fn signed(value: f64, decimals: usize) -> String {
         (false, true) => format!("−{text}"),
         (false, false) => format!("+{text}"),
     }
+}
+
+/// A part of a whole in percent, with a sign.
+pub(crate) fn signed_percent(part: f64, whole: f64) -> String {
+    if whole > 0.0 { format!("{} %", signed(100.0 * part / whole, 1)) } else { "–".to_owned() }
 }
 
 /// A name of a month.

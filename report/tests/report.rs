@@ -2,11 +2,12 @@
 
 #![expect(clippy::unwrap_used, reason = "a test ends where something is not as expected")]
 
-use report::{Assumption, StudyReport, Verdict, paper_findings, render};
-use store::{
-    AnnualRow, DesignRow, ExclusionCount, FindingRow, LimitShare, MonthRow, MonthlyRow, StatusCounts, StoredFile,
-    StoredFinding,
-};
+use cabin::{ComfortWindow, Devices, Heating};
+use ingest::{FileKind, FileRecord, Finding, FindingKind};
+use report::{StudyReport, Verdict, paper_findings, render};
+use solve::Method;
+use store::{AnnualRow, DesignRow, ExclusionCount, LimitShare, MonthRow, MonthlyRow, StatusCounts};
+use study::assumptions::Assumption;
 
 const LIMITS: [f64; 5] = [0.0, 0.5, 1.0, 1.5, 2.0];
 
@@ -24,22 +25,20 @@ fn study(designs: &[(&str, f64)]) -> StudyReport {
     for &(name, neutral_w) in designs {
         report.designs.push(DesignRow {
             name: name.to_owned(),
-            heating: "hp".to_owned(),
+            heating: Heating::HeatPump,
             heating_cop: "vecto-continuous".to_owned(),
             cooling_cop: "linear".to_owned(),
-            radiant_heaters: false,
-            air_curtain: false,
-            method: "fast".to_owned(),
+            devices: Devices::NONE,
+            method: Method::Fast,
             design_key: String::new(),
         });
         for limit in LIMITS {
+            let window = ComfortWindow::symmetric(limit).unwrap();
             let power = |neutral: f64| neutral * (1.0 - 0.2 * limit);
             let reference = designs.iter().find(|d| d.0 == "ptc").map(|d| power(d.1));
             report.annual.push(AnnualRow {
                 design: name.to_owned(),
-                pmv_min: 0.0 - limit,
-                pmv_max: limit,
-                pmv_limit: limit,
+                window,
                 hvac_power_w: Some(power(neutral_w)),
                 heating_power_w: Some(0.8 * power(neutral_w)),
                 cooling_power_w: Some(0.2 * power(neutral_w)),
@@ -50,8 +49,7 @@ fn study(designs: &[(&str, f64)]) -> StudyReport {
             });
             report.limit_shares.push(LimitShare {
                 design: name.to_owned(),
-                pmv_min: 0.0 - limit,
-                pmv_max: limit,
+                window,
                 solved_count: 120,
                 lower_count: 56,
                 upper_count: 20,
@@ -63,9 +61,7 @@ fn study(designs: &[(&str, f64)]) -> StudyReport {
             });
             report.monthly.extend((1..=12).map(|month| MonthlyRow {
                 design: name.to_owned(),
-                pmv_min: 0.0 - limit,
-                pmv_max: limit,
-                pmv_limit: limit,
+                window,
                 month,
                 hvac_power_w: Some(power(neutral_w) + f64::from(month)),
                 sample_count: 10,
@@ -146,27 +142,26 @@ fn prop_findings_compare_with_the_paper_in_whole_percent() {
 fn prop_text_from_outside_breaks_neither_tables_nor_spreadsheets() {
     let mut study = study(&[("a|b\n<script>", 1000.0), ("=cmd()", 900.0)]);
     study.note = Some("a note with <b>".to_owned());
-    study.files.push(StoredFile {
-        path: "=HYPERLINK(\"x\"),|.csv".to_owned(),
-        kind: "mission".to_owned(),
+    let record = |path: &str, accepted, findings| FileRecord {
+        path: path.to_owned(),
+        kind: FileKind::Mission,
         blake3: "0".repeat(64),
         bytes: 1,
         rows: 1,
-        first_utc: None,
-        last_utc: None,
-        accepted: false,
-    });
-    study.findings.push(StoredFinding {
-        path: "@x|y".to_owned(),
-        file_kind: "mission".to_owned(),
-        finding: FindingRow {
-            kind: "empty".to_owned(),
-            count: 1,
-            line: Some(1),
-            column: Some("-c".to_owned()),
-            message: "line\nbreak | *bar*".to_owned(),
-        },
-    });
+        first: None,
+        last: None,
+        accepted,
+        findings,
+    };
+    let finding = Finding {
+        kind: FindingKind::Empty,
+        count: 1,
+        line: Some(1),
+        column: Some("-c".to_owned()),
+        message: "line\nbreak | *bar*".to_owned(),
+    };
+    study.files.push(record("=HYPERLINK(\"x\"),|.csv", false, Vec::new()));
+    study.files.push(record("@x|y", true, vec![finding]));
     study.exclusions.push(ExclusionCount { reason: "a | b".to_owned(), count: 2 });
     study.assumptions.push(Assumption {
         what: "COP".to_owned(),
@@ -236,7 +231,7 @@ fn prop_figures_of_missions_are_xml_and_keep_their_panels_apart() {
         label: label.to_owned(),
         curves: vec![curve("<a>", height), curve("", 0.0)],
     };
-    let figure = report::MissionFigure {
+    let figure = report::PanelFigure {
         title: "A & B".to_owned(),
         caption: "c".to_owned(),
         note: "synthetic".to_owned(),
@@ -248,8 +243,8 @@ fn prop_figures_of_missions_are_xml_and_keep_their_panels_apart() {
             report::Panel { label: "none".to_owned(), curves: Vec::new() },
         ],
     };
-    let svg = report::mission_svg(&figure).unwrap();
-    assert_eq!(svg, report::mission_svg(&figure).unwrap());
+    let svg = report::panels_svg(&figure).unwrap();
+    assert_eq!(svg, report::panels_svg(&figure).unwrap());
     let document = roxmltree::Document::parse(&svg).unwrap();
     let labels: Vec<&str> =
         document.descendants().filter(|n| n.has_tag_name("text")).filter_map(|n| n.text()).collect();

@@ -3,6 +3,8 @@
 use chrono::{DateTime, Datelike, Duration, DurationRound, TimeZone, Timelike, Utc};
 use std::io::Read;
 
+use crate::hour_of_year;
+
 const HOURS: usize = 8760;
 
 /// Shadow fractions at the full hours of one reference year, repeated by calendar date.
@@ -157,6 +159,19 @@ impl ShadowYear {
         integral / (end - start).as_seconds_f64()
     }
 
+    /// What the shade from `start` to `end` is made of: a hash over the full hours that the span lies between. Shade elsewhere
+    /// does not change it.
+    #[must_use]
+    pub fn key(&self, start: DateTime<Utc>, end: DateTime<Utc>) -> String {
+        let mut hasher = blake3::Hasher::new();
+        let mut hour = full_hour(start);
+        while hour < end + Duration::hours(1) {
+            hasher.update(&self.at_full_hour(hour).to_le_bytes());
+            hour += Duration::hours(1);
+        }
+        hasher.finalize().to_hex().to_string()
+    }
+
     fn at_full_hour(&self, hour: DateTime<Utc>) -> f64 {
         self.hourly[hour_of_year(hour)]
     }
@@ -164,14 +179,6 @@ impl ShadowYear {
 
 fn full_hour(instant: DateTime<Utc>) -> DateTime<Utc> {
     instant.duration_trunc(Duration::hours(1)).expect("an hour divides every date that chrono can hold")
-}
-
-/// Hour number in a year of 365 days; 29 February counts as the 28th.
-fn hour_of_year(hour: DateTime<Utc>) -> usize {
-    let leap_day = hour.month() == 2 && hour.day() == 29;
-    let after_leap_day = hour.date_naive().leap_year() && hour.month() > 2;
-    let day = hour.ordinal0() as usize - usize::from(leap_day || after_leap_day);
-    day * 24 + hour.hour() as usize
 }
 
 fn hour_label(hour_of_year: usize) -> String {

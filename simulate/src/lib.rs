@@ -1,22 +1,35 @@
-//! The bus in time: the dynamic model, and the controller that drives it.
+//! The bus in time: the dynamic model, and the controllers that drive it.
 //!
-//! The five balances (paper, eq. `odes`) with their heat capacities, the first-order lag of the air unit (eq. `vcc-ode`),
-//! and the control of the paper's validation (section "Validation of the Steady-State Assumption"): operating mode, curtain and
-//! heaters of the steady-state optimum are held within each segment, its cabin temperature is tracked by a PI controller.
+//! The five balances (paper, eq. `odes`) with their heat capacities, and the first-order lag of the air unit (eq. `vcc-ode`).
+//! [`simulate`](fn@simulate) is the loop; a [`Scenario`] says where a mission starts and what limits hold, a law of
+//! [`control`] asks for power. The paper's validation (section "Validation of the Steady-State Assumption") and three
+//! less bound ways to drive are [`Replay`]s of the steady-state optima.
 //!
-//! Pure functions of a mission's loads and weather: [`simulate`] knows no files, no clock and no database, and allocates
-//! nothing.
+//! Pure functions of a mission's loads and weather: no files, no clock, no database, and nothing allocated.
 
 mod average;
 mod constants;
-mod control;
+pub mod control;
+mod drive;
+mod instant;
 mod mission;
 mod model;
+mod replay;
+mod scenario;
+mod segment;
+mod summary;
+mod trace;
 
 pub use constants::{Dynamics, DynamicsError};
-pub use control::PiController;
-pub use mission::{Change, Conduct, Hour, Instant, Mission, Summary, simulate};
+pub use drive::simulate;
+pub use instant::Instant;
+pub use mission::Mission;
 pub use model::{BusState, Commands, depot_temperature_k, step};
+pub use replay::{Law, Replay};
+pub use scenario::{Limits, PowerLimits, Scenario, Start};
+pub use segment::Segment;
+pub use summary::Summary;
+pub use trace::{Trace, TraceMinute};
 
 /// Version of the model: it changes whenever a stored simulation would, beyond rounding, come out differently.
 pub const SIMULATION_VERSION: u32 = 1;

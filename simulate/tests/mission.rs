@@ -1,62 +1,15 @@
 //! The dynamic model: it settles on the optima, keeps its energy, and its step is short enough.
 
 use cabin::{
-    Aim, Cabin, ComfortWindow, Cop, Design, Disturbances, Heaters, Heating, PassengerViews, Temperatures, Vehicle,
-    kelvin, named_cooling_cops, named_heating_cops,
+    Cabin, ComfortWindow, Design, Disturbances, Heating, LoadChange, OperatingMode, Operation, PassengerViews,
+    Temperatures, Vehicle, kelvin,
 };
-use simulate::{BusState, Change, Commands, Conduct, Dynamics, Hour, Instant, Mission, Summary, simulate, step};
-use solve::{Grid, OperatingMode, Operation, Optimum, Outcome, SampleSolver};
+use simulate::{BusState, Commands, Dynamics, Instant, Mission, Replay, Segment, Summary, step};
+use testing::{day, design, optimum, paper_designs};
 
-fn design(name: &str, heating: Heating, radiant_heaters: bool, air_curtain: bool) -> Design {
-    let heating_cop = match heating {
-        Heating::Ptc => Cop::Constant(1.0),
-        Heating::HeatPump => named_heating_cops().swap_remove(0).1,
-    };
-    let cooling_cop = named_cooling_cops().swap_remove(0).1;
-    Design { name: name.to_owned(), heating, heating_cop, cooling_cop, radiant_heaters, air_curtain }
-}
-
-fn designs() -> Vec<Design> {
-    vec![
-        design("ptc", Heating::Ptc, false, false),
-        design("ptc+rh", Heating::Ptc, true, false),
-        design("hp", Heating::HeatPump, false, false),
-        design("hp+rh", Heating::HeatPump, true, false),
-        design("hp+curtain", Heating::HeatPump, false, true),
-    ]
-}
-
-fn day(ambient_c: f64, dni_w_m2: f64, passengers: f64, door_open_fraction: f64) -> Disturbances {
-    Disturbances {
-        ambient_temperature_k: kelvin(ambient_c),
-        dni_w_m2,
-        dhi_w_m2: 0.2 * dni_w_m2,
-        solar_altitude_rad: 0.9,
-        shadow_fraction: 0.3,
-        passengers,
-        door_open_fraction,
-    }
-}
-
-fn optimum(vehicle: &Vehicle, views: &PassengerViews, design: &Design, d: &Disturbances, limit: f64) -> Operation {
+fn segment(vehicle: &Vehicle, views: &PassengerViews, o: Operation, d: &Disturbances, limit: f64) -> Segment {
     let window = ComfortWindow::symmetric(limit).expect("valid");
-    let grid = Grid::new(vec![design.clone()], vec![window]).expect("valid");
-    let mut optima = [Optimum { design: 0, window: 0, outcome: Outcome::NotConverged }];
-    SampleSolver::new(vehicle, views, &grid).solve(d, &mut optima);
-    match optima[0].outcome {
-        Outcome::Solved(operation, _) => operation,
-        other => panic!("{other:?}"),
-    }
-}
-
-fn hour(vehicle: &Vehicle, views: &PassengerViews, o: Operation, d: &Disturbances, limit: f64) -> Hour {
-    let cabin = Cabin::new(vehicle, views, d);
-    let heaters = if o.radiant_heaters_on { Heaters::On } else { Heaters::Off };
-    let at = |pmv| {
-        let state = cabin.state(Aim::Vote(pmv), heaters, &cabin.rough_state(295.0)).expect("settles");
-        state.temperatures.cabin_k
-    };
-    Hour { optimum: o, band_k: [at(-limit), at(limit)] }
+    Segment::new(&Cabin::new(vehicle, views, d), &o, window)
 }
 
 /// Constant inputs for so many hours.
@@ -65,24 +18,23 @@ fn constant(
     d: &Disturbances,
     limit: f64,
     hours: usize,
-    conduct: Conduct,
+    replay: Replay,
 ) -> (Operation, Summary, Instant) {
     let vehicle = Vehicle::default();
     let views = PassengerViews::new(&vehicle);
     let o = optimum(&vehicle, &views, design, d, limit);
-    let hours = vec![hour(&vehicle, &views, o, d, limit); hours];
-    let minutes = vec![Cabin::new(&vehicle, &views, d); 60 * hours.len()];
-    let changes = [Change { second: 0, passengers: d.passengers, door_open: true }];
+    let segments = vec![segment(&vehicle, &views, o, d, limit); hours];
+    let minutes = vec![Cabin::new(&vehicle, &views, d); 60 * segments.len()];
+    let loads = [LoadChange { second: 0, passengers: d.passengers, door_open: true }];
     let mission = Mission {
-        changes: &changes,
+        loads: &loads,
         minutes: &minutes,
-        hours: &hours,
+        segments: &segments,
         segment_s: 3600,
         door_open_share: d.door_open_fraction,
     };
     let mut last = None;
-    let summary =
-        simulate(&mission, design, &Dynamics::default(), conduct, |now| last = Some(*now)).expect("it has hours");
+    let summary = replay.run(&mission, design, &Dynamics::default(), |now| last = Some(*now)).expect("it has segments");
     (o, summary, last.expect("it has seconds"))
 }
 
@@ -95,11 +47,11 @@ fn prop_with_constant_inputs_the_simulation_settles_on_the_optimum() {
         day(33.0, 800.0, 16.0, 0.14),
     ];
     let mut modes = Vec::new();
-    for design in designs() {
+    for design in paper_designs() {
         for d in &days {
             for limit in [0.0, 1.0] {
-                let (o, _, end) = constant(&design, d, limit, 30, Conduct::Unlimited);
-                modes.push((o.mode, o.radiant_heaters_on));
+                let (o, _, end) = constant(&design, d, limit, 30, Replay::UNLIMITED);
+                modes.push((o.mode, o.devices.radiant_heaters));
                 let (a, b) = (o.temperatures, end.state.temperatures);
                 let off_k = [
                     a.cabin_k - b.cabin_k,
@@ -128,9 +80,9 @@ fn prop_with_constant_inputs_the_simulation_settles_on_the_optimum() {
 }
 
 /// A mission with stops: doors open for 20 s every 80 s, another load at each stop.
-fn stops(seconds: u32) -> Vec<Change> {
+fn stops(seconds: u32) -> Vec<LoadChange> {
     (0..seconds / 40)
-        .map(|i| Change {
+        .map(|i| LoadChange {
             second: 80 * (i / 2) + 20 * (i % 2),
             passengers: f64::from((i / 2 * 7) % 41),
             door_open: i % 2 == 0,
@@ -145,7 +97,7 @@ fn prop_energy_is_conserved_over_a_mission() {
     let dynamics = Dynamics::default();
     let design = design("hp+rh", Heating::HeatPump, true, true);
     let d = day(-2.0, 150.0, 0.0, 0.0);
-    let changes = stops(3600 * 3);
+    let loads = stops(3600 * 3);
     let weather = Cabin::new(&vehicle, &views, &d);
     let depot = simulate::depot_temperature_k(d.ambient_temperature_k);
     let t = Temperatures {
@@ -165,7 +117,7 @@ fn prop_energy_is_conserved_over_a_mission() {
         (gains + f.air_unit_w + f.radiant_heater_power_w - losses, gains + f.air_unit_w + f.radiant_heater_power_w)
     };
     let (mut state, mut net_j, mut through_j) = (start, 0.0, 0.0);
-    let mut next = changes.iter().peekable();
+    let mut next = loads.iter().peekable();
     let (mut passengers, mut doors) = (0.0, 0.0);
     for second in 0..3600 * 3 {
         while let Some(change) = next.next_if(|c| c.second <= second) {
@@ -196,7 +148,7 @@ fn prop_a_shorter_step_changes_less_than_a_millikelvin_and_a_tenth_of_a_watt() {
     let vehicle = Vehicle::default();
     let views = PassengerViews::new(&vehicle);
     let dynamics = Dynamics::default();
-    for design in designs() {
+    for design in paper_designs() {
         let weather = Cabin::new(&vehicle, &views, &day(-8.0, 0.0, 0.0, 0.0));
         let t = weather.rough_state(kelvin(6.0)).temperatures;
         let mut coarse = BusState { temperatures: t, air_unit_heat_w: 0.0 };
@@ -207,7 +159,7 @@ fn prop_a_shorter_step_changes_less_than_a_millikelvin_and_a_tenth_of_a_watt() {
             let commands = Commands {
                 air_unit_power_w: if second / 37 % 2 == 0 { 12_000.0 } else { 500.0 },
                 radiant_heater_power_w: if second / 91 % 2 == 0 { 4_000.0 } else { 0.0 },
-                air_curtain_on: design.air_curtain,
+                air_curtain_on: design.devices.air_curtain,
             };
             let cabin = weather.with_load(f64::from(second / 80 % 60), if second % 80 < 20 { 0.6 } else { 0.0 });
             coarse = step(&cabin, &design, &dynamics, &coarse, &commands, 1.0);
@@ -307,27 +259,27 @@ fn xval_ode_solvers_the_step_of_a_second_is_short_enough() {
     assert!(mean_off_w.abs() < 0.1, "{mean_off_w} W");
 }
 
-fn winter_mission(ambient_c: f64, limit: f64, hours: usize, conduct: Conduct) -> (Summary, Vec<Instant>, Operation) {
+fn winter_mission(ambient_c: f64, limit: f64, hours: usize, replay: Replay) -> (Summary, Vec<Instant>, Operation) {
     let vehicle = Vehicle::default();
     let views = PassengerViews::new(&vehicle);
     let design = design("hp+curtain", Heating::HeatPump, false, true);
     // Doors 20 of 80 s, three fifths of them.
     let d = day(ambient_c, 0.0, 20.0, 0.15);
     let o = optimum(&vehicle, &views, &design, &d, limit);
-    let hours = vec![hour(&vehicle, &views, o, &d, limit); hours];
-    let minutes = vec![Cabin::new(&vehicle, &views, &d); 60 * hours.len()];
-    let changes = stops(3600 * hours.len() as u32);
+    let segments = vec![segment(&vehicle, &views, o, &d, limit); hours];
+    let minutes = vec![Cabin::new(&vehicle, &views, &d); 60 * segments.len()];
+    let loads = stops(3600 * segments.len() as u32);
     let mission =
-        Mission { changes: &changes, minutes: &minutes, hours: &hours, segment_s: 3600, door_open_share: 0.6 };
+        Mission { loads: &loads, minutes: &minutes, segments: &segments, segment_s: 3600, door_open_share: 0.6 };
     let mut instants = Vec::new();
     let summary =
-        simulate(&mission, &design, &Dynamics::default(), conduct, |now| instants.push(*now)).expect("it has hours");
+        replay.run(&mission, &design, &Dynamics::default(), |now| instants.push(*now)).expect("it has segments");
     (summary, instants, o)
 }
 
 #[test]
 fn paper_the_controller_tracks_and_the_shell_follows_the_steady_state() {
-    let (summary, instants, o) = winter_mission(-0.7, 1.0, 8, Conduct::Paper);
+    let (summary, instants, o) = winter_mission(-0.7, 1.0, 8, Replay::PAPER);
     // After the start-up the inside of the shell matches the steady state; doors leave short, small deviations.
     let later = &instants[4 * 3600..];
     for now in later {
@@ -344,15 +296,15 @@ fn paper_the_controller_tracks_and_the_shell_follows_the_steady_state() {
 #[test]
 fn paper_the_power_limit_shows_at_high_comfort_demands() {
     let missed = |limit| {
-        let limited = winter_mission(-8.0, limit, 6, Conduct::WarmStart).0;
-        let free = winter_mission(-8.0, limit, 6, Conduct::Unlimited).0;
+        let limited = winter_mission(-8.0, limit, 6, Replay::WARM_START).0;
+        let free = winter_mission(-8.0, limit, 6, Replay::UNLIMITED).0;
         (limited.saturated_fraction, free.mean_hvac_power_w - limited.mean_hvac_power_w)
     };
     // On a cold day; at the paper's −0.7 °C it takes longer door openings than these.
     let (strict, loose) = (missed(0.0), missed(1.5));
     assert!(strict.0 > loose.0 + 0.01, "{strict:?} {loose:?}");
     assert!(loose.0 < 0.01, "{loose:?}");
-    assert!(winter_mission(-8.0, 0.0, 6, Conduct::Unlimited).0.saturated_fraction == 0.0);
+    assert!(winter_mission(-8.0, 0.0, 6, Replay::UNLIMITED).0.saturated_fraction == 0.0);
 }
 
 #[test]
@@ -378,9 +330,9 @@ fn paper_the_largest_summer_violation_follows_a_mode_switch() {
         (23.0, 0.0),
     ];
     let samples: Vec<Disturbances> = day_of.iter().map(|&(c, dni)| day(c, dni, 16.0, 0.15)).collect();
-    let hours: Vec<Hour> = samples
+    let segments: Vec<Segment> = samples
         .iter()
-        .map(|d| hour(&vehicle, &views, optimum(&vehicle, &views, &design, d, limit), d, limit))
+        .map(|d| segment(&vehicle, &views, optimum(&vehicle, &views, &design, d, limit), d, limit))
         .collect();
     // Between the middles of the hours the weather is linear.
     let minutes: Vec<Cabin<'_>> = (0..60 * day_of.len())
@@ -393,19 +345,20 @@ fn paper_the_largest_summer_violation_follows_a_mode_switch() {
             Cabin::new(&vehicle, &views, &day(mix(|h| h.0), mix(|h| h.1), 0.0, 0.0))
         })
         .collect();
-    let changes: Vec<Change> =
-        stops(3600 * day_of.len() as u32).into_iter().map(|c| Change { passengers: 16.0, ..c }).collect();
+    let loads: Vec<LoadChange> =
+        stops(3600 * day_of.len() as u32).into_iter().map(|c| LoadChange { passengers: 16.0, ..c }).collect();
     let mission =
-        Mission { changes: &changes, minutes: &minutes, hours: &hours, segment_s: 3600, door_open_share: 0.6 };
+        Mission { loads: &loads, minutes: &minutes, segments: &segments, segment_s: 3600, door_open_share: 0.6 };
     let mut worst = (0, 0.0);
-    simulate(&mission, &design, &Dynamics::default(), Conduct::WarmStart, |now| {
-        let excess = now.pmv_15min.abs() - limit;
-        if excess > worst.1 {
-            worst = (now.second / 3600, excess);
-        }
-    })
-    .expect("it has hours");
-    let modes: Vec<OperatingMode> = hours.iter().map(|h| h.optimum.mode).collect();
+    Replay::WARM_START
+        .run(&mission, &design, &Dynamics::default(), |now| {
+            let excess = now.pmv_15min.abs() - limit;
+            if excess > worst.1 {
+                worst = (now.second / 3600, excess);
+            }
+        })
+        .expect("it has segments");
+    let modes: Vec<OperatingMode> = segments.iter().map(|h| h.optimum.mode).collect();
     let at = worst.0 as usize;
     assert!(modes.contains(&OperatingMode::Cooling) && modes.contains(&OperatingMode::Passive), "{modes:?}");
     // In the hour that it begins, or while the steady state already counts on the next one.
@@ -415,12 +368,40 @@ fn paper_the_largest_summer_violation_follows_a_mode_switch() {
 
 #[test]
 fn prop_a_controller_changes_nothing_but_its_own_state() {
-    let (a, _, _) = winter_mission(-0.7, 0.5, 3, Conduct::FreeMode);
-    let (b, _, _) = winter_mission(-0.7, 0.5, 3, Conduct::FreeMode);
+    let (a, _, _) = winter_mission(-0.7, 0.5, 3, Replay::FREE_MODE);
+    let (b, _, _) = winter_mission(-0.7, 0.5, 3, Replay::FREE_MODE);
     assert_eq!(a, b);
     assert_eq!(
         Dynamics { air_unit_time_constant_s: 0.1, ..Dynamics::default() }.check().map_err(|e| e.name),
         Err("air_unit_time_constant_s")
     );
     assert_eq!(Dynamics::default().check(), Ok(()));
+}
+
+#[test]
+fn prop_a_trace_is_the_mean_of_each_minute() {
+    let vehicle = Vehicle::default();
+    let views = PassengerViews::new(&vehicle);
+    let design = design("hp", Heating::HeatPump, false, false);
+    let d = testing::winter_day();
+    let segments = vec![segment(&vehicle, &views, optimum(&vehicle, &views, &design, &d, 1.0), &d, 1.0)];
+    let minutes = vec![Cabin::new(&vehicle, &views, &d); 60];
+    let loads = stops(3600);
+    let mission =
+        Mission { loads: &loads, minutes: &minutes, segments: &segments, segment_s: 3600, door_open_share: 0.6 };
+    let (mut trace, mut seconds) = (simulate::Trace::default(), Vec::new());
+    let record = |now: &Instant| {
+        trace.add(now);
+        seconds.push(*now);
+    };
+    Replay::PAPER.run(&mission, &design, &Dynamics::default(), record).expect("it has segments");
+    let trace = trace.finish(&mission);
+    assert_eq!(trace.len(), 60);
+    for (minute, part) in trace.iter().zip(seconds.chunks(60)) {
+        let mean = |f: &dyn Fn(&Instant) -> f64| part.iter().map(f).sum::<f64>() / 60.0;
+        assert!((minute.cabin_k - mean(&|n| n.state.temperatures.cabin_k)).abs() < 1e-9, "{minute:?}");
+        assert!((minute.pmv - mean(&|n| n.pmv)).abs() < 1e-9 && minute.ambient_k == d.ambient_temperature_k);
+        assert!((minute.hvac_power_w - mean(&|n| n.hvac_power_w())).abs() < 1e-6);
+        assert!((minute.door_open_fraction - mean(&|n| n.door_open_fraction)).abs() < 1e-12);
+    }
 }

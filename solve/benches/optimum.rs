@@ -1,11 +1,9 @@
-//! Time of an optimum on one core, and of a year's grid on all cores: `cargo bench -p busclimate-solve`.
+//! Time of an optimum on one core, and of a year's grid on all cores: `cargo bench --workspace --bench optimum`.
 
-use cabin::{PassengerViews, Vehicle};
+use cabin::{Optimum, PassengerViews, Vehicle};
 use divan::{Bencher, counter::ItemsCount};
-use solve::{Optimum, Outcome, SampleSolver, solve_blocks};
-use year::{SAMPLES, grid, samples};
-
-mod year;
+use solve::{SampleSolver, solve_blocks};
+use testing::{YEAR_SAMPLES, paper_grid, year};
 
 fn main() {
     divan::main();
@@ -13,10 +11,10 @@ fn main() {
 
 #[divan::bench]
 fn one_core(bencher: Bencher) {
-    let (vehicle, grid, samples) = (Vehicle::default(), grid(), samples());
+    let (vehicle, grid, samples) = (Vehicle::default(), paper_grid(), year());
     let views = PassengerViews::new(&vehicle);
-    let mut optima = vec![Optimum { design: 0, window: 0, outcome: Outcome::NotConverged }; grid.points()];
-    bencher.counter(ItemsCount::new(SAMPLES * grid.points())).bench_local(|| {
+    let mut optima = vec![Optimum::UNSOLVED; grid.points()];
+    bencher.counter(ItemsCount::new(YEAR_SAMPLES * grid.points())).bench_local(|| {
         let mut solver = SampleSolver::new(&vehicle, &views, &grid);
         for sample in &samples {
             solver.solve(divan::black_box(sample), &mut optima);
@@ -27,8 +25,8 @@ fn one_core(bencher: Bencher) {
 
 #[divan::bench]
 fn all_cores(bencher: Bencher) {
-    let (vehicle, grid, samples) = (Vehicle::default(), grid(), samples());
-    bencher.counter(ItemsCount::new(SAMPLES * grid.points())).bench_local(|| {
+    let (vehicle, grid, samples) = (Vehicle::default(), paper_grid(), year());
+    bencher.counter(ItemsCount::new(YEAR_SAMPLES * grid.points())).bench_local(|| {
         solve_blocks(&vehicle, &grid, &samples, |_, optima| {
             divan::black_box(optima);
             true

@@ -53,7 +53,7 @@ pub fn certify(vehicle: &Vehicle, designs: &[Design]) -> Result<(), CertificateE
         for cop in [&design.heating_cop, &design.cooling_cop] {
             check_falling(cop)?;
         }
-        if design.radiant_heaters {
+        if design.devices.radiant_heaters {
             check_heaters(vehicle, design)?;
         }
     }

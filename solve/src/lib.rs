@@ -14,19 +14,18 @@
 //! depend on curtain and heat source, `T_0` does not depend on the window: the work is shared between designs and
 //! windows, and a point costs a few multiplications.
 
+mod blocks;
 mod certificate;
 mod grid;
+mod method;
 pub mod nlp;
-mod optimum;
 mod sample;
 mod states;
-mod study;
 
 pub use certificate::{CertificateError, certify};
 pub use grid::{Grid, GridError};
-pub use optimum::{Candidate, Infeasible, OperatingMode, Operation, Optimum, Outcome};
-pub use sample::SampleSolver;
-pub use study::solve_blocks;
+pub use method::Method;
+pub use sample::{SampleSolver, solve_blocks};
 
 /// Version of the method: it changes whenever a stored optimum would, beyond rounding, come out differently.
 pub const METHOD_VERSION: u32 = 2;

@@ -1,18 +1,17 @@
 //! The optima of one sample for all designs and comfort windows.
 
-use cabin::{Cabin, Design, Disturbances, Heaters, PassengerViews, Vehicle};
+use cabin::{
+    Cabin, Candidate, Design, Devices, Disturbances, Heaters, Infeasible, OperatingMode, Operation, Optimum, Outcome,
+    PassengerViews, Vehicle,
+};
 
-use crate::states::{Held, States};
-use crate::{Candidate, Grid, Infeasible, OperatingMode, Operation, Optimum, Outcome};
+use crate::Grid;
+use crate::blocks::in_blocks;
+use crate::states::{States, SteadyState};
 
 /// Cabin temperatures that the air unit can be asked to hold, in K: −60 … 60 °C.
 const COLDEST_K: f64 = 213.15;
 const HOTTEST_K: f64 = 333.15;
-
-/// A choice of devices: whether the radiant heaters are on, and whether the air curtains run. Fewer devices come first,
-/// so that of equal choices the one with fewer wins.
-type Choice = (bool, bool);
-const CHOICES: [Choice; 4] = [(false, false), (false, true), (true, false), (true, true)];
 
 /// What a choice comes to in a window.
 #[derive(Debug, Clone, Copy)]
@@ -25,8 +24,8 @@ enum Best<'s> {
 /// The best operation with a choice of devices, before a design's COP turns its heat into power.
 #[derive(Debug, Clone, Copy)]
 struct Found<'s> {
-    choice: Choice,
-    held: &'s Held,
+    devices: Devices,
+    state: &'s SteadyState,
     mode: OperatingMode,
     air_unit_heat_w: f64,
 }
@@ -51,17 +50,12 @@ pub struct SampleSolver<'a> {
     wanted: [bool; 4],
 }
 
-/// Whether a design has what a choice needs.
-fn has(design: &Design, (heaters, curtain): Choice) -> bool {
-    (design.radiant_heaters || !heaters) && (design.air_curtain || !curtain)
-}
-
 impl<'a> SampleSolver<'a> {
     /// A solver for a grid. `views` are the vehicle's passengers, computed once per study.
     #[must_use]
     pub fn new(vehicle: &'a Vehicle, views: &'a PassengerViews, grid: &'a Grid) -> Self {
         let states = [Heaters::Off, Heaters::On].map(|h| States::new(h, grid.limits().len()));
-        let wanted = CHOICES.map(|choice| grid.designs().iter().any(|d| has(d, choice)));
+        let wanted = Devices::CHOICES.map(|choice| grid.designs().iter().any(|d| d.devices.include(choice)));
         Self { vehicle, views, grid, states, wanted }
     }
 
@@ -73,7 +67,7 @@ impl<'a> SampleSolver<'a> {
         let windows = self.grid.windows().len();
         for window in 0..windows {
             let bests: [Option<Best>; 4] =
-                std::array::from_fn(|i| self.wanted[i].then(|| self.best(window, CHOICES[i])));
+                std::array::from_fn(|i| self.wanted[i].then(|| self.best(window, Devices::CHOICES[i])));
             for (design, spec) in self.grid.designs().iter().enumerate() {
                 let outcome = compare(&cabin, spec, &bests);
                 optima[design * windows + window] = Optimum { design, window, outcome };
@@ -87,13 +81,12 @@ impl<'a> SampleSolver<'a> {
         let cabin = Cabin::new(self.vehicle, self.views, disturbances);
         self.find_states(&cabin);
         let design = &self.grid.designs()[design];
-        CHOICES.map(|choice| {
-            let operation = match self.best(window, choice) {
+        Devices::CHOICES.map(|devices| {
+            let operation = match self.best(window, devices) {
                 Best::Found(found) => Some(found.operation(&found.powers(&cabin, design))),
                 Best::Infeasible(_) | Best::Lost => None,
             };
-            let (radiant_heaters_on, air_curtain_on) = choice;
-            Candidate { air_curtain_on, radiant_heaters_on, available: has(design, choice), operation }
+            Candidate { devices, available: design.devices.include(devices), operation }
         })
     }
 
@@ -108,39 +101,39 @@ impl<'a> SampleSolver<'a> {
     }
 
     /// The best operation with a choice: the passive state moved into the window.
-    fn best(&self, window: usize, choice: Choice) -> Best<'_> {
-        let (heaters, curtain) = choice;
-        let states = &self.states[usize::from(heaters)];
+    fn best(&self, window: usize, devices: Devices) -> Best<'_> {
+        let states = &self.states[usize::from(devices.radiant_heaters)];
+        let curtain = devices.air_curtain;
         let comfort = &self.grid.windows()[window];
         let (low, high) = self.grid.window_limits()[window];
         let Some(passive) = &states.passive[usize::from(curtain)] else { return Best::Lost };
-        let (held, mode) = if passive.pmv < comfort.pmv_min() {
-            let Some(held) = &states.limits[low] else { return Best::Lost };
-            if held.temperatures.cabin_k > HOTTEST_K {
+        let (state, mode) = if passive.pmv < comfort.pmv_min() {
+            let Some(state) = &states.limits[low] else { return Best::Lost };
+            if state.temperatures.cabin_k > HOTTEST_K {
                 return Best::Infeasible(Infeasible::TooCold);
             }
-            (held, OperatingMode::Heating)
+            (state, OperatingMode::Heating)
         } else if passive.pmv > comfort.pmv_max() {
-            let Some(held) = &states.limits[high] else { return Best::Lost };
-            if held.temperatures.cabin_k < COLDEST_K {
+            let Some(state) = &states.limits[high] else { return Best::Lost };
+            if state.temperatures.cabin_k < COLDEST_K {
                 return Best::Infeasible(Infeasible::TooWarm);
             }
-            (held, OperatingMode::Cooling)
+            (state, OperatingMode::Cooling)
         } else {
             (passive, OperatingMode::Passive)
         };
-        if held.radiant_heater_power_w < 0.0 {
+        if state.radiant_heater_power_w < 0.0 {
             // Surroundings hotter than the panels' target: they cannot be held there by heating.
             return Best::Infeasible(Infeasible::TooWarm);
         }
-        let heat_w = held.air_unit_heat_w[usize::from(curtain)];
+        let heat_w = state.air_unit_heat_w[usize::from(curtain)];
         let (mode, air_unit_heat_w) = match mode {
             OperatingMode::Heating if heat_w > 0.0 => (mode, heat_w),
             OperatingMode::Cooling if heat_w < 0.0 => (mode, heat_w),
             // At the passive state, to rounding.
             _ => (OperatingMode::Passive, 0.0),
         };
-        Best::Found(Found { choice, held, mode, air_unit_heat_w })
+        Best::Found(Found { devices, state, mode, air_unit_heat_w })
     }
 }
 
@@ -149,8 +142,8 @@ fn compare(cabin: &Cabin<'_>, design: &Design, bests: &[Option<Best<'_>>; 4]) ->
     let mut cheapest: Option<(Found<'_>, Powers)> = None;
     let mut second_w = f64::INFINITY;
     let mut failure = Outcome::NotConverged;
-    for (&choice, best) in CHOICES.iter().zip(bests) {
-        if !has(design, choice) {
+    for (&choice, best) in Devices::CHOICES.iter().zip(bests) {
+        if !design.devices.include(choice) {
             continue;
         }
         match *best {
@@ -181,31 +174,46 @@ fn compare(cabin: &Cabin<'_>, design: &Design, bests: &[Option<Best<'_>>; 4]) ->
 
 impl Found<'_> {
     fn powers(&self, cabin: &Cabin<'_>, design: &Design) -> Powers {
-        let lift_k = self.held.temperatures.cabin_k - cabin.ambient_k();
+        let lift_k = self.state.temperatures.cabin_k - cabin.ambient_k();
         let air_unit_w = match self.mode {
             OperatingMode::Heating => self.air_unit_heat_w / design.heating_cop.at(lift_k),
             OperatingMode::Cooling => -self.air_unit_heat_w / design.cooling_cop.at(-lift_k),
             OperatingMode::Passive => 0.0,
         };
-        let radiant_heater_w = self.held.radiant_heater_power_w;
-        let air_curtain_w = if self.choice.1 { cabin.air_curtain_power_w() } else { 0.0 };
+        let radiant_heater_w = self.state.radiant_heater_power_w;
+        let air_curtain_w = if self.devices.air_curtain { cabin.air_curtain_power_w() } else { 0.0 };
         Powers { air_unit_w, radiant_heater_w, air_curtain_w, total_w: air_unit_w + radiant_heater_w + air_curtain_w }
     }
 
     fn operation(&self, powers: &Powers) -> Operation {
-        let (radiant_heaters_on, air_curtain_on) = self.choice;
         Operation {
             mode: self.mode,
-            air_curtain_on,
-            radiant_heaters_on,
+            devices: self.devices,
             air_unit_power_w: powers.air_unit_w,
             radiant_heater_power_w: powers.radiant_heater_w,
             air_curtain_power_w: powers.air_curtain_w,
             air_unit_heat_w: self.air_unit_heat_w,
-            temperatures: self.held.temperatures,
-            mean_radiant_temperature_k: self.held.mean_radiant_k,
-            pmv: self.held.pmv,
-            standard_range: self.held.standard_range,
+            temperatures: self.state.temperatures,
+            mean_radiant_temperature_k: self.state.mean_radiant_k,
+            pmv: self.state.pmv,
+            standard_range: self.state.standard_range,
         }
     }
+}
+
+/// Samples that one task solves before it hands over: large enough that the hand-over costs nothing.
+const BLOCK: usize = 64;
+
+/// Solves every sample for every point of the grid on rayon's current pool and hands the results over in blocks, in the
+/// order of the samples whatever the thread count: `consume(first_sample, optima)`, with [`Grid::points`] optima a
+/// sample. It stops early when `consume` returns `false`, and then returns `false` itself.
+pub fn solve_blocks(
+    vehicle: &Vehicle,
+    grid: &Grid,
+    samples: &[Disturbances],
+    consume: impl FnMut(usize, &[Optimum]) -> bool,
+) -> bool {
+    let views = PassengerViews::new(vehicle);
+    let solver = || SampleSolver::new(vehicle, &views, grid);
+    in_blocks(samples, grid.points(), BLOCK, Optimum::UNSOLVED, solver, SampleSolver::solve, consume)
 }

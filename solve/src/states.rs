@@ -5,13 +5,13 @@
 //! is an optimum, so no other is computed. Each walk starts at the passive state and predicts every next state from the
 //! last two.
 
-use cabin::{Aim, Cabin, Heaters, StandardRange, State, Temperatures};
+use cabin::{Cabin, Heaters, StandardRange, State, Target, Temperatures};
 
 use crate::grid::Limit;
 
 /// A cabin state with everything that the comparison of designs needs.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Held {
+pub(crate) struct SteadyState {
     pub temperatures: Temperatures,
     pub mean_radiant_k: f64,
     pub pmv: f64,
@@ -22,7 +22,7 @@ pub(crate) struct Held {
     pub radiant_heater_power_w: f64,
 }
 
-impl Held {
+impl SteadyState {
     fn new(cabin: &Cabin<'_>, heaters: Heaters, state: &State) -> Self {
         let t = state.temperatures;
         let heat_w = |curtain| cabin.air_unit_heat_w(&t, &state.slopes, curtain).0;
@@ -46,9 +46,9 @@ impl Held {
 pub(crate) struct States {
     heaters: Heaters,
     /// Without and with air curtain.
-    pub passive: [Option<Held>; 2],
+    pub passive: [Option<SteadyState>; 2],
     /// At the grid's limits.
-    pub limits: Vec<Option<Held>>,
+    pub limits: Vec<Option<SteadyState>>,
 }
 
 impl States {
@@ -67,8 +67,8 @@ impl States {
             if !curtains[usize::from(curtain)] {
                 continue;
             }
-            let Some(state) = cabin.state(Aim::Passive { curtain }, self.heaters, &guess) else { continue };
-            self.passive[usize::from(curtain)] = Some(Held::new(cabin, self.heaters, &state));
+            let Some(state) = cabin.state(Target::Passive { curtain }, self.heaters, &guess) else { continue };
+            self.passive[usize::from(curtain)] = Some(SteadyState::new(cabin, self.heaters, &state));
             let [mut least, mut largest] = ends.unwrap_or([state; 2]);
             if state.pmv < least.pmv {
                 least = state;
@@ -90,9 +90,9 @@ impl States {
         let (mut before, mut last) = (None, from);
         for i in indices {
             let pmv = limits[i].pmv;
-            let guess = last.toward(pmv, before.as_ref());
-            let Some(state) = cabin.state(Aim::Vote(pmv), self.heaters, &guess) else { continue };
-            self.limits[i] = Some(Held::new(cabin, self.heaters, &state));
+            let guess = last.extrapolate(pmv, before.as_ref());
+            let Some(state) = cabin.state(Target::Vote(pmv), self.heaters, &guess) else { continue };
+            self.limits[i] = Some(SteadyState::new(cabin, self.heaters, &state));
             (before, last) = (Some(last), state);
         }
     }

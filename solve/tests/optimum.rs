@@ -2,11 +2,15 @@
 
 mod common;
 
-use cabin::{Cabin, ComfortWindow, Cop, Disturbances, Heating, PassengerViews, Vehicle, kelvin};
+use cabin::{
+    Cabin, ComfortWindow, Cop, Devices, Disturbances, Heating, Infeasible, OperatingMode, Outcome, PassengerViews,
+    Vehicle, kelvin,
+};
 use common::reference::Reference;
-use common::{design, designs, disturbances, operation, solve, windows};
+use common::{disturbances, solve, windows};
 use proptest::prelude::*;
-use solve::{CertificateError, Grid, Infeasible, OperatingMode, Outcome, SampleSolver, certify};
+use solve::{CertificateError, Grid, SampleSolver, certify};
+use testing::{all_designs, design, operation};
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(8))]
@@ -15,14 +19,13 @@ proptest! {
         let vehicle = Vehicle::default();
         let views = PassengerViews::from_view_factors(&[0.009, 0.013, 0.0142, 0.0165]);
         let window = ComfortWindow::symmetric(0.125 * limit as f64).expect("valid");
-        let grid = Grid::new(designs(), vec![window]).expect("valid");
+        let grid = Grid::new(all_designs(), vec![window]).expect("valid");
         let optima = solve(&vehicle, &views, &grid, &d);
-        let choices = [(false, false), (false, true), (true, false), (true, true)];
         for (optimum, design) in optima.iter().zip(grid.designs()) {
-            let allowed = choices.iter().filter(|c| (design.radiant_heaters || !c.0) && (design.air_curtain || !c.1));
+            let allowed = Devices::CHOICES.iter().filter(|&&choice| design.devices.include(choice));
             let least_w = allowed
-                .map(|&(heaters, curtain)| {
-                    Reference::new(&vehicle, &views, &d, heaters, curtain).least_w(design, &window, 40)
+                .map(|choice| {
+                    Reference::new(&vehicle, &views, &d, choice.radiant_heaters, choice.air_curtain).least_w(design, &window, 40)
                 })
                 .fold(f64::INFINITY, f64::min);
             let ours_w = operation(optimum).hvac_power_w();
@@ -36,20 +39,19 @@ proptest! {
     fn prop_balances_close_and_limits_hold_at_every_optimum(d in disturbances()) {
         let vehicle = Vehicle::default();
         let views = PassengerViews::from_view_factors(&[0.009, 0.013, 0.0142, 0.0165]);
-        let grid = Grid::new(designs(), windows()).expect("valid");
+        let grid = Grid::new(all_designs(), windows()).expect("valid");
         let cabin = Cabin::new(&vehicle, &views, &d);
         for optimum in solve(&vehicle, &views, &grid, &d) {
             let o = operation(&optimum);
             let window = grid.windows()[optimum.window];
-            let flows = cabin.flows(&o.temperatures, o.air_curtain_on, o.air_unit_heat_w, o.radiant_heater_power_w);
+            let flows = cabin.flows(&o.temperatures, o.devices.air_curtain, o.air_unit_heat_w, o.radiant_heater_power_w);
             prop_assert!(flows.net_w().iter().all(|w| w.abs() < 1e-6), "{:?}", flows.net_w());
             let vote = |&view| cabin.passenger_pmv(&o.temperatures, view);
             let mean = views.all().iter().map(vote).sum::<f64>() / views.all().len() as f64;
             prop_assert!((mean - o.pmv).abs() < 1e-8, "{mean} {}", o.pmv);
             prop_assert!(o.pmv > window.pmv_min() - 1e-12 && o.pmv < window.pmv_max() + 1e-12, "{} {window:?}", o.pmv);
             let design = &grid.designs()[optimum.design];
-            prop_assert!(design.air_curtain || !o.air_curtain_on);
-            prop_assert!(design.radiant_heaters || !o.radiant_heaters_on);
+            prop_assert!(design.devices.include(o.devices));
             let mode = match o.air_unit_heat_w {
                 w if w > 0.0 => OperatingMode::Heating,
                 w if w < 0.0 => OperatingMode::Cooling,
@@ -67,7 +69,7 @@ proptest! {
         let vehicle = Vehicle::default();
         let views = PassengerViews::from_view_factors(&[0.009, 0.013, 0.0142, 0.0165]);
         let windows = windows();
-        let grid = Grid::new(designs(), windows.clone()).expect("valid");
+        let grid = Grid::new(all_designs(), windows.clone()).expect("valid");
         let optima = solve(&vehicle, &views, &grid, &d);
         let power_w = |design: usize, window: usize| operation(&optima[design * windows.len() + window]).hvac_power_w();
         for design in 0..grid.designs().len() {
@@ -102,7 +104,7 @@ fn prop_heaters_can_have_their_optimum_inside_the_window() {
             door_open_fraction: 0.1,
         };
         let o = operation(&solve(&vehicle, &views, &grid, &d)[0]);
-        if o.radiant_heaters_on && o.mode == OperatingMode::Passive && o.pmv.abs() < 0.999 {
+        if o.devices.radiant_heaters && o.mode == OperatingMode::Passive && o.pmv.abs() < 0.999 {
             inside += 1;
         }
     }
@@ -114,7 +116,7 @@ fn prop_a_window_out_of_reach_is_a_status() {
     let vehicle = Vehicle { other_heat_w: 200_000.0, ..Vehicle::default() };
     let views = PassengerViews::new(&vehicle);
     let hot = ComfortWindow::new(3.0, 3.0).expect("valid");
-    let grid = Grid::new(designs(), vec![hot]).expect("valid");
+    let grid = Grid::new(all_designs(), vec![hot]).expect("valid");
     let d = Disturbances {
         ambient_temperature_k: kelvin(-70.0),
         dni_w_m2: 0.0,
@@ -135,7 +137,7 @@ fn prop_a_window_out_of_reach_is_a_status() {
 fn prop_the_candidates_contain_the_optimum() {
     let vehicle = Vehicle::default();
     let views = PassengerViews::new(&vehicle);
-    let grid = Grid::new(designs(), windows()).expect("valid");
+    let grid = Grid::new(all_designs(), windows()).expect("valid");
     let d = Disturbances {
         ambient_temperature_k: kelvin(2.0),
         dni_w_m2: 100.0,
@@ -160,25 +162,25 @@ fn prop_the_candidates_contain_the_optimum() {
 
 #[test]
 fn prop_the_certificate_holds_for_the_paper_and_refuses_what_it_cannot_prove() {
-    assert_eq!(certify(&Vehicle::default(), &designs()), Ok(()));
+    assert_eq!(certify(&Vehicle::default(), &all_designs()), Ok(()));
     let mut eager = design("eager", Heating::HeatPump, true, false);
     eager.heating_cop = Cop::Constant(40.0);
     assert!(matches!(
         certify(&Vehicle::default(), std::slice::from_ref(&eager)),
         Err(CertificateError::Heaters { .. })
     ));
-    eager.radiant_heaters = false;
+    eager.devices.radiant_heaters = false;
     assert_eq!(certify(&Vehicle::default(), &[eager.clone()]), Ok(()));
     eager.heating_cop = Cop::Linear { at_zero: 2.0, slope_per_k: -0.1, min: 1.0, max: 9.0 };
     assert!(matches!(certify(&Vehicle::default(), &[eager]), Err(CertificateError::Cop(_))));
     let broken = Vehicle { shell_area_m2: 0.0, ..Vehicle::default() };
-    assert!(matches!(certify(&broken, &designs()), Err(CertificateError::Vehicle(_))));
+    assert!(matches!(certify(&broken, &all_designs()), Err(CertificateError::Vehicle(_))));
 }
 
 #[test]
 fn prop_the_thread_count_does_not_show() {
     let vehicle = Vehicle::default();
-    let grid = Grid::new(designs(), windows()).expect("valid");
+    let grid = Grid::new(all_designs(), windows()).expect("valid");
     let samples: Vec<Disturbances> = (0..700)
         .map(|i| Disturbances {
             ambient_temperature_k: kelvin(-10.0 + 0.06 * f64::from(i)),

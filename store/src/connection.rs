@@ -2,7 +2,7 @@
 
 use sqlx::migrate::{MigrateError, Migrator};
 use sqlx::sqlite::{SqliteConnectOptions, SqliteConnection, SqliteJournalMode, SqliteSynchronous};
-use sqlx::{ConnectOptions, Connection};
+use sqlx::{ConnectOptions, Connection, Row};
 use std::future::Future;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -82,7 +82,7 @@ impl Store {
         Ok(store)
     }
 
-    /// Opens an existing database for reading.
+    /// Opens an existing database for reading. One of an earlier version is brought up to date first, which needs to write.
     ///
     /// # Errors
     /// [`StoreError`] where there is none or it cannot be opened.
@@ -95,7 +95,22 @@ impl Store {
             .read_only(true)
             .busy_timeout(BUSY_TIMEOUT)
             .pragma("cache_size", "-65536");
+        let mut store = Self::connect(path, &options)?;
+        if store.is_current()? {
+            return Ok(store);
+        }
+        store.close()?;
+        Self::open(path)?.close()?;
         Self::connect(path, &options)
+    }
+
+    /// Whether the schema is that of this program.
+    fn is_current(&mut self) -> Result<bool, StoreError> {
+        self.drive(async |c| {
+            let sql = "SELECT count(*) AS applied FROM _sqlx_migrations WHERE success";
+            let row = sqlx::query(sql).fetch_one(c).await?;
+            Ok(row.try_get::<i64, _>("applied")? >= MIGRATIONS.iter().count() as i64)
+        })
     }
 
     fn connect(path: &Path, options: &SqliteConnectOptions) -> Result<Self, StoreError> {

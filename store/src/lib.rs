@@ -5,25 +5,25 @@
 //! its views, described in `docs/database.md`.
 
 mod connection;
-mod inputs;
+mod files;
+mod grid;
+mod missions;
 mod optima;
-mod rows;
+mod row;
 mod runs;
+mod samples;
 mod simulations;
-mod study;
+mod traces;
 mod verification;
 mod views;
 
 pub use connection::{Store, StoreError};
-pub use inputs::KnownFile;
-pub use optima::{PointId, StoredOptimum};
-pub use rows::{
-    DesignRow, ExclusionRow, FileRow, FindingRow, SampleRow, SegmentRow, StoredExclusion, StoredFinding, WindowRow,
-};
+pub use files::ReadingKeys;
+pub use grid::{DesignRow, GridChange, StoredGrid};
+pub use missions::StoredSegment;
+pub use optima::StoredOptimum;
 pub use runs::{Counts, RunEnd, RunRow};
-pub use simulations::{LoadRow, SimulatedClass, SimulatedYear, SimulationId, SimulationRow};
-pub use study::{StoredStudy, StudyChange};
+pub use simulations::{SimulatedClass, SimulatedYear, SimulationFailure, SimulationId, SimulationRow};
+pub use traces::{MissionTrace, TraceRow, TraceWindow};
 pub use verification::{CheckRow, VerificationRow};
-pub use views::{
-    AnnualRow, ExclusionCount, LimitShare, MonthRow, MonthlyRow, OptimumRow, StatusCounts, StoredFile, StoredSample,
-};
+pub use views::{AnnualRow, ExclusionCount, LimitShare, MonthRow, MonthlyRow, OptimumRow, StatusCounts};

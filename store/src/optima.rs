@@ -1,34 +1,59 @@
 //! Optima: which are missing, and writing them in bulk.
 
-use cabin::{StandardRange, Temperatures};
+use cabin::{Devices, Infeasible, OperatingMode, Operation, Optimum, Outcome, StandardRange, Temperatures};
 use solve::nlp::Effort;
-use solve::{Infeasible, OperatingMode, Operation, Optimum, Outcome};
 use sqlx::sqlite::{SqliteArguments, SqliteConnection, SqliteRow};
 use sqlx::{Arguments, AssertSqlSafe, Connection, Row};
 use std::collections::BTreeSet;
 
-use crate::{Store, StoreError};
+use crate::row::insert_sql;
+use crate::{Store, StoreError, StoredGrid};
 
-const COLUMNS: usize = 22;
+/// The columns, in the order in which [`add_row`] gives their values.
+const COLUMNS: [&str; 22] = [
+    "sample_id",
+    "design_id",
+    "window_id",
+    "status",
+    "operating_mode",
+    "air_curtain_on",
+    "radiant_heaters_on",
+    "outside_standard_range",
+    "air_unit_power_w",
+    "radiant_heater_power_w",
+    "air_curtain_power_w",
+    "air_unit_heat_w",
+    "cabin_k",
+    "interior_k",
+    "shell_inside_k",
+    "shell_outside_k",
+    "radiant_heater_k",
+    "mean_radiant_k",
+    "pmv",
+    "runner_up_excess_w",
+    "kkt_residual",
+    "subproblem_count",
+];
 /// Rows of one INSERT: from here on a statement does not get cheaper by the row.
 const ROWS: usize = 400;
 
-/// The key of an optimum.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub struct PointId {
-    /// Sample.
-    pub sample_id: i64,
-    /// Design.
-    pub design_id: i64,
-    /// Window.
-    pub window_id: i64,
-}
+/// How outcomes are kept in `status`.
+const STATUSES: [(i64, Outcome); 3] = [
+    (1, Outcome::Infeasible(Infeasible::TooWarm)),
+    (2, Outcome::Infeasible(Infeasible::TooCold)),
+    (3, Outcome::NotConverged),
+];
+const SOLVED: i64 = 0;
 
 /// An optimum as it is stored.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StoredOptimum {
-    /// Its key.
-    pub id: PointId,
+    /// Sample.
+    pub sample_id: i64,
+    /// Place of the design in the stored grid.
+    pub design: usize,
+    /// Place of the window in the stored grid.
+    pub window: usize,
     /// How it ended; `None` where the row lacks a value that its status asks for.
     pub outcome: Option<Outcome>,
 }
@@ -42,41 +67,43 @@ impl Store {
         self.drive(async |c| {
             let sql = "SELECT sample_id FROM optimum_point GROUP BY sample_id HAVING count(*) = ?";
             let rows = sqlx::query(sql).bind(points as i64).fetch_all(c).await?;
-            rows.iter().map(|r| Ok(r.try_get(0)?)).collect()
+            rows.iter().map(|r| Ok(r.try_get("sample_id")?)).collect()
         })
     }
 
-    /// The stored optima of the samples from `first` to `last`, in the order of their keys.
+    /// The stored optima of the samples from `first` to `last`, in the order of samples, designs and windows.
     ///
     /// # Errors
     /// [`StoreError::Statement`].
-    pub fn optima(&mut self, first: i64, last: i64) -> Result<Vec<StoredOptimum>, StoreError> {
+    pub fn optima(&mut self, grid: &StoredGrid, first: i64, last: i64) -> Result<Vec<StoredOptimum>, StoreError> {
         self.drive(async |c| {
             let sql = "SELECT * FROM optimum_point WHERE sample_id BETWEEN ? AND ?
                 ORDER BY sample_id, design_id, window_id";
             let rows = sqlx::query(sql).bind(first).bind(last).fetch_all(c).await?;
             rows.iter()
                 .map(|r| {
-                    let id = PointId {
+                    Ok(StoredOptimum {
                         sample_id: r.try_get("sample_id")?,
-                        design_id: r.try_get("design_id")?,
-                        window_id: r.try_get("window_id")?,
-                    };
-                    Ok(StoredOptimum { id, outcome: outcome(r)? })
+                        design: grid.design(r.try_get("design_id")?)?,
+                        window: grid.window(r.try_get("window_id")?)?,
+                        outcome: outcome(r)?,
+                    })
                 })
                 .collect()
         })
     }
 
-    /// Writes optima in one transaction; whatever `samples` had of them is replaced. Rows in the order of their key append
-    /// to the table and are fastest. Methods that iterate say what a point has cost.
+    /// Writes optima of a grid in one transaction, each with its sample; whatever `samples` had of them is replaced. Samples
+    /// in the order of their ids, and within one designs and windows in the order of the grid, append to the table and are
+    /// fastest. Methods that iterate say what a point has cost.
     ///
     /// # Errors
     /// [`StoreError::Statement`].
     pub fn put_optima<'a>(
         &mut self,
+        grid: &StoredGrid,
         samples: &[i64],
-        mut points: impl Iterator<Item = (PointId, &'a Optimum, Option<Effort>)>,
+        mut points: impl Iterator<Item = (i64, &'a Optimum, Option<Effort>)>,
     ) -> Result<(), StoreError> {
         self.drive(async |c| {
             let mut tx = c.begin().await?;
@@ -87,12 +114,12 @@ impl Store {
                 .execute(&mut *tx)
                 .await?;
             let full = insert_statement(ROWS);
-            let mut chunk = encode(&mut points)?;
+            let mut chunk = encode(grid, &mut points)?;
             while chunk.rows > 0 {
                 let sql = if chunk.rows == ROWS { full.clone() } else { insert_statement(chunk.rows) };
                 // SQLite works on a thread of its own: the next rows are put together meanwhile.
                 let (written, next) =
-                    tokio::join!(execute(&mut tx, sql, chunk.arguments), async { encode(&mut points) });
+                    tokio::join!(execute(&mut tx, sql, chunk.arguments), async { encode(grid, &mut points) });
                 written?;
                 chunk = next?;
             }
@@ -108,11 +135,15 @@ struct Chunk {
     rows: usize,
 }
 
-fn encode<'a>(points: &mut impl Iterator<Item = (PointId, &'a Optimum, Option<Effort>)>) -> Result<Chunk, StoreError> {
+fn encode<'a>(
+    grid: &StoredGrid,
+    points: &mut impl Iterator<Item = (i64, &'a Optimum, Option<Effort>)>,
+) -> Result<Chunk, StoreError> {
     let mut chunk = Chunk::default();
-    chunk.arguments.reserve(ROWS * COLUMNS, 0);
-    for (id, optimum, effort) in points.take(ROWS) {
-        add_row(&mut chunk.arguments, id, optimum, effort).map_err(sqlx::Error::Encode)?;
+    chunk.arguments.reserve(ROWS * COLUMNS.len(), 0);
+    for (sample_id, optimum, effort) in points.take(ROWS) {
+        let keys = [sample_id, grid.design_ids[optimum.design], grid.window_ids[optimum.window]];
+        add_row(&mut chunk.arguments, keys, &optimum.outcome, effort).map_err(sqlx::Error::Encode)?;
         chunk.rows += 1;
     }
     Ok(chunk)
@@ -125,35 +156,28 @@ async fn execute(c: &mut SqliteConnection, sql: String, arguments: SqliteArgumen
 }
 
 fn insert_statement(rows: usize) -> String {
-    let row = format!("({})", vec!["?"; COLUMNS].join(","));
-    format!("INSERT INTO optimum_point VALUES {}", vec![row; rows].join(","))
+    insert_sql("INSERT", "optimum_point", &COLUMNS, rows)
 }
 
 fn add_row(
     a: &mut SqliteArguments,
-    id: PointId,
-    optimum: &Optimum,
+    keys: [i64; 3],
+    outcome: &Outcome,
     effort: Option<Effort>,
 ) -> Result<(), sqlx::error::BoxDynError> {
-    let status = match optimum.outcome {
-        Outcome::Solved(..) => 0_i64,
-        Outcome::Infeasible(Infeasible::TooWarm) => 1,
-        Outcome::Infeasible(Infeasible::TooCold) => 2,
-        Outcome::NotConverged => 3,
-    };
-    for key in [id.sample_id, id.design_id, id.window_id, status] {
+    let status = STATUSES.iter().find(|(_, other)| other == outcome).map_or(SOLVED, |s| s.0);
+    for key in keys.into_iter().chain([status]) {
         a.add(key)?;
     }
-    let Outcome::Solved(o, runner_up_excess_w) = optimum.outcome else {
-        for _ in 4..COLUMNS - 2 {
+    let Outcome::Solved(o, runner_up_excess_w) = outcome else {
+        for _ in 4..COLUMNS.len() - 2 {
             a.add(None::<f64>)?;
         }
         return add_effort(a, effort);
     };
-    let outside = o.standard_range == cabin::StandardRange::Outside;
-    for choice in
-        [i64::from(o.mode.number()), i64::from(o.air_curtain_on), i64::from(o.radiant_heaters_on), i64::from(outside)]
-    {
+    let outside = o.standard_range == StandardRange::Outside;
+    let (curtain, heaters) = (o.devices.air_curtain, o.devices.radiant_heaters);
+    for choice in [i64::from(o.mode.number()), i64::from(curtain), i64::from(heaters), i64::from(outside)] {
         a.add(choice)?;
     }
     let t = o.temperatures;
@@ -172,7 +196,7 @@ fn add_row(
     ] {
         a.add(value)?;
     }
-    a.add(runner_up_excess_w)?;
+    a.add(*runner_up_excess_w)?;
     add_effort(a, effort)
 }
 
@@ -181,66 +205,51 @@ fn add_effort(a: &mut SqliteArguments, effort: Option<Effort>) -> Result<(), sql
     a.add(effort.map(|e| i64::from(e.subproblems)))
 }
 
-/// A row of the optima as it is stored; `None` where a value that its status asks for is missing.
+/// The outcome of a row; `None` where a value that its status asks for is missing.
 fn outcome(r: &SqliteRow) -> Result<Option<Outcome>, sqlx::Error> {
     let status: i64 = r.try_get("status")?;
-    match status {
-        0 => {}
-        1 => return Ok(Some(Outcome::Infeasible(Infeasible::TooWarm))),
-        2 => return Ok(Some(Outcome::Infeasible(Infeasible::TooCold))),
-        _ => return Ok(Some(Outcome::NotConverged)),
-    }
+    if status == SOLVED { solved(r) } else { Ok(STATUSES.iter().find(|(code, _)| *code == status).map(|s| s.1)) }
+}
+
+fn solved(r: &SqliteRow) -> Result<Option<Outcome>, sqlx::Error> {
     let whole = |name: &str| r.try_get::<Option<i64>, _>(name);
     let real = |name: &str| r.try_get::<Option<f64>, _>(name);
-    let mode = match whole("operating_mode")? {
-        Some(-1) => OperatingMode::Cooling,
-        Some(0) => OperatingMode::Passive,
-        Some(1) => OperatingMode::Heating,
-        _ => return Ok(None),
-    };
-    let (Some(curtain), Some(heaters), Some(outside)) =
-        (whole("air_curtain_on")?, whole("radiant_heaters_on")?, whole("outside_standard_range")?)
-    else {
+    let (Some(mode), Some(curtain), Some(heaters), Some(outside)) = (
+        whole("operating_mode")?.and_then(OperatingMode::from_number),
+        whole("air_curtain_on")?,
+        whole("radiant_heaters_on")?,
+        whole("outside_standard_range")?,
+    ) else {
         return Ok(None);
     };
-    let names = [
-        "air_unit_power_w",
-        "radiant_heater_power_w",
-        "air_curtain_power_w",
-        "air_unit_heat_w",
-        "cabin_k",
-        "interior_k",
-        "shell_inside_k",
-        "shell_outside_k",
-        "radiant_heater_k",
-        "mean_radiant_k",
-        "pmv",
-    ];
-    let mut values = [0.0; 11];
-    for (value, name) in values.iter_mut().zip(names) {
-        let Some(stored) = real(name)? else { return Ok(None) };
-        *value = stored;
-    }
-    let [air_unit_w, heaters_w, curtain_w, heat_w, cabin_k, interior_k, inside_k, outside_k, heater_k, radiant_k, pmv] =
-        values;
+    let mut complete = true;
+    let mut value = |name: &str| -> Result<f64, sqlx::Error> {
+        let stored = real(name)?;
+        complete &= stored.is_some();
+        Ok(stored.unwrap_or(f64::NAN))
+    };
     let operation = Operation {
         mode,
-        air_curtain_on: curtain == 1,
-        radiant_heaters_on: heaters == 1,
-        air_unit_power_w: air_unit_w,
-        radiant_heater_power_w: heaters_w,
-        air_curtain_power_w: curtain_w,
-        air_unit_heat_w: heat_w,
+        devices: Devices { radiant_heaters: heaters == 1, air_curtain: curtain == 1 },
+        air_unit_power_w: value("air_unit_power_w")?,
+        radiant_heater_power_w: value("radiant_heater_power_w")?,
+        air_curtain_power_w: value("air_curtain_power_w")?,
+        air_unit_heat_w: value("air_unit_heat_w")?,
         temperatures: Temperatures {
-            cabin_k,
-            interior_k,
-            shell_inside_k: inside_k,
-            shell_outside_k: outside_k,
-            radiant_heater_k: heater_k,
+            cabin_k: value("cabin_k")?,
+            interior_k: value("interior_k")?,
+            shell_inside_k: value("shell_inside_k")?,
+            shell_outside_k: value("shell_outside_k")?,
+            radiant_heater_k: value("radiant_heater_k")?,
         },
-        mean_radiant_temperature_k: radiant_k,
-        pmv,
+        mean_radiant_temperature_k: value("mean_radiant_k")?,
+        pmv: value("pmv")?,
         standard_range: if outside == 1 { StandardRange::Outside } else { StandardRange::Inside },
     };
-    Ok(Some(Outcome::Solved(operation, real("runner_up_excess_w")?)))
+    Ok(if complete { Some(Outcome::Solved(operation, real("runner_up_excess_w")?)) } else { None })
+}
+
+/// The operation of a row that is solved and whole.
+pub(crate) fn operation(r: &SqliteRow) -> Result<Option<Operation>, sqlx::Error> {
+    Ok(outcome(r)?.and_then(|o| o.operation().copied()))
 }

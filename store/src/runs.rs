@@ -2,6 +2,7 @@
 
 use sqlx::Row;
 
+use crate::row::count;
 use crate::{Store, StoreError};
 
 /// How a run ended.
@@ -104,21 +105,21 @@ impl Store {
             let sql = "SELECT run_id, started_utc, finished_utc, status, program_version, point_count, solved_count,
                 failed_count FROM run ORDER BY run_id DESC LIMIT 1";
             let Some(r) = sqlx::query(sql).fetch_optional(c).await? else { return Ok(None) };
-            let points: Option<i64> = r.try_get(5)?;
+            let points: Option<i64> = r.try_get("point_count")?;
             let counts = match points {
                 None => None,
                 Some(points) => Some(Counts {
                     points: points.cast_unsigned(),
-                    solved: r.try_get::<i64, _>(6)?.cast_unsigned(),
-                    failed: r.try_get::<i64, _>(7)?.cast_unsigned(),
+                    solved: count(&r, "solved_count")?,
+                    failed: count(&r, "failed_count")?,
                 }),
             };
             Ok(Some(RunRow {
-                run_id: r.try_get(0)?,
-                started_utc: r.try_get(1)?,
-                finished_utc: r.try_get(2)?,
-                status: r.try_get(3)?,
-                program_version: r.try_get(4)?,
+                run_id: r.try_get("run_id")?,
+                started_utc: r.try_get("started_utc")?,
+                finished_utc: r.try_get("finished_utc")?,
+                status: r.try_get("status")?,
+                program_version: r.try_get("program_version")?,
                 counts,
             }))
         })

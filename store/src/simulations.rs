@@ -1,57 +1,40 @@
-//! Loads of missions in time, and simulated missions.
+//! Simulated missions: which are there, and writing them.
 
+use simulate::{Replay, Summary};
+use sqlx::sqlite::SqliteConnection;
 use sqlx::{Connection, Row};
 use std::collections::BTreeMap;
 
-use crate::{Store, StoreError};
+use crate::row::{Insert, count, window};
+use crate::{Store, StoreError, StoredGrid};
+use cabin::ComfortWindow;
 
-/// From a second of the mission on, so many passengers are on board and a door is open or not.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LoadRow {
-    /// Second since the start of the mission.
-    pub second: u32,
-    /// Passengers on board.
-    pub passengers: f64,
-    /// Whether at least one door is open.
-    pub door_open: bool,
-}
-
-/// Bytes of a load.
-const LOAD_BYTES: usize = 13;
-
-/// A simulated mission with one design, window and controller.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SimulationRow {
+/// What a simulated mission is found by.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub struct SimulationId {
     /// Path of the mission's file, as the study names it.
     pub source_path: String,
-    /// Design.
-    pub design_id: i64,
-    /// Comfort window.
-    pub window_id: i64,
-    /// How the bus was run.
-    pub controller: &'static str,
-    /// What the row depends on, hashed.
-    pub simulation_key: String,
+    /// Place of the design in the stored grid.
+    pub design: usize,
+    /// Place of the window in the stored grid.
+    pub window: usize,
+}
+
+/// A mission, to be stored with a design and window.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SimulationRow {
+    /// What it is found by.
+    pub id: SimulationId,
+    /// What it depends on, hashed.
+    pub key: String,
     /// Name of the mission.
     pub mission: String,
     /// Local month of its start.
     pub month: u8,
     /// Mean ambient temperature in K.
     pub ambient_k: f64,
-    /// Simulated seconds.
-    pub seconds: u32,
-    /// Mean power in W.
-    pub mean_hvac_power_w: f64,
-    /// The same of the steady-state optima in W.
-    pub static_mean_hvac_power_w: f64,
-    /// Largest absolute 15-minute mean vote while somebody is on board.
-    pub max_abs_pmv_15min: Option<f64>,
-    /// Largest absolute vote of the optima.
-    pub static_max_abs_pmv: f64,
-    /// Share of the time at a power limit.
-    pub saturated_fraction: f64,
-    /// Root mean square of the tracking error in K.
-    pub tracking_error_k: f64,
+    /// What each replay of its optima came to, or why it cannot be simulated.
+    pub result: Result<Vec<(Replay, Summary)>, String>,
 }
 
 /// A row of `simulation_annual`.
@@ -59,10 +42,8 @@ pub struct SimulationRow {
 pub struct SimulatedYear {
     /// Design.
     pub design: String,
-    /// Lower limit of the window.
-    pub pmv_min: f64,
-    /// Upper limit of the window.
-    pub pmv_max: f64,
+    /// Comfort window.
+    pub window: ComfortWindow,
     /// How the bus was run.
     pub controller: String,
     /// Annual mean power in W.
@@ -75,7 +56,7 @@ pub struct SimulatedYear {
     pub mission_count: u64,
 }
 
-/// Simulated missions of one class, run as in the paper: means over all their seconds.
+/// A row of `simulation_class`: simulated missions of one class, run as in the paper, with means over all their seconds.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SimulatedClass {
     /// What they are sorted by: `month`, `ambient temperature`, `mission length`.
@@ -84,10 +65,8 @@ pub struct SimulatedClass {
     pub class: String,
     /// Design.
     pub design: String,
-    /// Lower limit of the window.
-    pub pmv_min: f64,
-    /// Upper limit of the window.
-    pub pmv_max: f64,
+    /// Comfort window.
+    pub window: ComfortWindow,
     /// Missions.
     pub mission_count: u64,
     /// Mean power in W.
@@ -102,33 +81,96 @@ pub struct SimulatedClass {
     pub saturated_fraction: f64,
 }
 
-/// What a simulated mission is found by: path of its file, design, window.
-pub type SimulationId = (String, i64, i64);
+/// A row of `simulation_failure`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SimulationFailure {
+    /// Name of the mission.
+    pub mission: String,
+    /// Design.
+    pub design: String,
+    /// Comfort window.
+    pub window: ComfortWindow,
+    /// Why it is not simulated.
+    pub reason: String,
+}
 
 impl Store {
-    /// The loads of a mission file; none where it has none stored.
+    /// The keys of all missions that were simulated, or cannot be.
     ///
     /// # Errors
     /// [`StoreError::Statement`].
-    pub fn loads(&mut self, source_path: &str) -> Result<Vec<LoadRow>, StoreError> {
+    pub fn simulation_keys(&mut self, grid: &StoredGrid) -> Result<BTreeMap<SimulationId, String>, StoreError> {
         self.drive(async |c| {
-            let sql = "SELECT loads FROM mission_load JOIN source_file USING (source_file_id) WHERE path = ?";
-            let row = sqlx::query(sql).bind(source_path).fetch_optional(c).await?;
-            let bytes: Vec<u8> = row.map(|r| r.try_get(0)).transpose()?.unwrap_or_default();
-            Ok(bytes.chunks_exact(LOAD_BYTES).map(decode).collect())
+            let sql = "SELECT DISTINCT path, design_id, window_id, simulation_key
+                FROM (SELECT source_file_id, design_id, window_id, simulation_key FROM simulated_mission
+                    UNION ALL SELECT source_file_id, design_id, window_id, simulation_key FROM unsimulated_mission)
+                JOIN source_file USING (source_file_id)";
+            let rows = sqlx::query(sql).fetch_all(c).await?;
+            rows.iter()
+                .map(|r| {
+                    let id = SimulationId {
+                        source_path: r.try_get("path")?,
+                        design: grid.design(r.try_get("design_id")?)?,
+                        window: grid.window(r.try_get("window_id")?)?,
+                    };
+                    Ok((id, r.try_get("simulation_key")?))
+                })
+                .collect()
         })
     }
 
-    /// The keys of all simulated missions.
+    /// Gives simulated missions new keys, where the old ones say the same in another way.
     ///
     /// # Errors
     /// [`StoreError::Statement`].
-    pub fn simulation_keys(&mut self) -> Result<BTreeMap<SimulationId, String>, StoreError> {
+    pub fn rekey_simulations(&mut self, grid: &StoredGrid, keys: &[(SimulationId, String)]) -> Result<(), StoreError> {
         self.drive(async |c| {
-            let sql = "SELECT DISTINCT path, design_id, window_id, simulation_key
-                FROM simulated_mission JOIN source_file USING (source_file_id)";
-            let rows = sqlx::query(sql).fetch_all(c).await?;
-            rows.iter().map(|r| Ok(((r.try_get(0)?, r.try_get(1)?, r.try_get(2)?), r.try_get(3)?))).collect()
+            let mut tx = c.begin().await?;
+            for (id, key) in keys {
+                let sql = "UPDATE simulated_mission SET simulation_key = ? WHERE design_id = ? AND window_id = ?
+                    AND source_file_id = (SELECT source_file_id FROM source_file WHERE path = ?)";
+                sqlx::query(sql)
+                    .bind(key)
+                    .bind(grid.design_ids[id.design])
+                    .bind(grid.window_ids[id.window])
+                    .bind(&id.source_path)
+                    .execute(&mut *tx)
+                    .await?;
+            }
+            Ok(tx.commit().await?)
+        })
+    }
+
+    /// Forgets simulated missions.
+    ///
+    /// # Errors
+    /// [`StoreError::Statement`].
+    pub fn forget_simulations(&mut self, grid: &StoredGrid, ids: &[SimulationId]) -> Result<(), StoreError> {
+        self.drive(async |c| {
+            let mut tx = c.begin().await?;
+            for id in ids {
+                forget(&mut tx, grid, id).await?;
+            }
+            Ok(tx.commit().await?)
+        })
+    }
+
+    /// Writes missions in one transaction; what is there of one is replaced.
+    ///
+    /// # Errors
+    /// [`StoreError::Statement`].
+    pub fn put_simulations(&mut self, grid: &StoredGrid, rows: &[SimulationRow]) -> Result<(), StoreError> {
+        self.drive(async |c| {
+            let mut tx = c.begin().await?;
+            for row in rows {
+                forget(&mut tx, grid, &row.id).await?;
+                let sql = "SELECT source_file_id FROM source_file WHERE path = ?";
+                let found = sqlx::query(sql).bind(&row.id.source_path).fetch_optional(&mut *tx).await?;
+                let found = found.ok_or_else(|| StoreError::UnknownFile(row.mission.clone()))?;
+                let file: i64 = found.try_get("source_file_id")?;
+                put(&mut tx, grid, file, row).await?;
+            }
+            Ok(tx.commit().await?)
         })
     }
 
@@ -137,158 +179,112 @@ impl Store {
     /// # Errors
     /// [`StoreError::Statement`].
     pub fn simulated_years(&mut self) -> Result<Vec<SimulatedYear>, StoreError> {
-        self.drive(async |c| {
-            let sql = "SELECT a.design, a.pmv_min, a.pmv_max, a.controller, a.mean_hvac_power_w,
-                    a.static_mean_hvac_power_w, a.saturated_fraction, a.mission_count
-                FROM simulation_annual AS a
-                JOIN hvac_design AS d ON d.name = a.design
-                JOIN comfort_window AS w USING (pmv_min, pmv_max)
-                ORDER BY d.position, w.position, a.controller";
-            let rows = sqlx::query(sql).fetch_all(c).await?;
-            rows.iter()
-                .map(|r| {
-                    Ok(SimulatedYear {
-                        design: r.try_get(0)?,
-                        pmv_min: r.try_get(1)?,
-                        pmv_max: r.try_get(2)?,
-                        controller: r.try_get(3)?,
-                        mean_hvac_power_w: r.try_get(4)?,
-                        static_mean_hvac_power_w: r.try_get(5)?,
-                        saturated_fraction: r.try_get(6)?,
-                        mission_count: r.try_get::<i64, _>(7)?.cast_unsigned(),
-                    })
-                })
-                .collect()
+        let sql = "SELECT a.* FROM simulation_annual AS a
+            JOIN hvac_design AS d ON d.name = a.design JOIN comfort_window AS w USING (pmv_min, pmv_max)
+            ORDER BY d.position, w.position, a.controller";
+        self.select(sql, |r| {
+            Ok(SimulatedYear {
+                design: r.try_get("design")?,
+                window: window(r)?,
+                controller: r.try_get("controller")?,
+                mean_hvac_power_w: r.try_get("mean_hvac_power_w")?,
+                static_mean_hvac_power_w: r.try_get("static_mean_hvac_power_w")?,
+                saturated_fraction: r.try_get("saturated_fraction")?,
+                mission_count: count(r, "mission_count")?,
+            })
         })
     }
 
-    /// Simulated missions by month, ambient temperature and length.
+    /// The view `simulation_class`, in the order of the study and of the classes.
     ///
     /// # Errors
     /// [`StoreError::Statement`].
     pub fn simulated_classes(&mut self) -> Result<Vec<SimulatedClass>, StoreError> {
-        self.drive(async |c| {
-            let sql = "WITH classed AS (
-                    SELECT s.*, v.mean_hvac_power_w AS warm_w, 0 AS sorting, 'month' AS sorted_by, s.month AS place,
-                        printf('%02d', s.month) AS class
-                    FROM simulation AS s JOIN simulation AS v USING (mission, design, pmv_min, pmv_max)
-                    WHERE s.controller = 'paper' AND v.controller = 'warm-start'
-                ),
-                all_classed AS (
-                    SELECT * FROM classed
-                    UNION ALL
-                    SELECT mission, design, pmv_limit, pmv_min, pmv_max, controller, mean_hvac_power_w,
-                        static_mean_hvac_power_w, max_abs_pmv_15min, static_max_abs_pmv, saturated_fraction,
-                        tracking_error_k, seconds, month, ambient_temperature_c, warm_w, 1, 'ambient temperature in °C',
-                        CAST(ambient_temperature_c / 5 + 100 AS INTEGER) - 100,
-                        printf('%d … %d', 5 * (CAST(ambient_temperature_c / 5 + 100 AS INTEGER) - 100),
-                            5 * (CAST(ambient_temperature_c / 5 + 100 AS INTEGER) - 99))
-                    FROM classed
-                    UNION ALL
-                    SELECT mission, design, pmv_limit, pmv_min, pmv_max, controller, mean_hvac_power_w,
-                        static_mean_hvac_power_w, max_abs_pmv_15min, static_max_abs_pmv, saturated_fraction,
-                        tracking_error_k, seconds, month, ambient_temperature_c, warm_w, 2, 'mission length in h',
-                        min(seconds / 14400, 4),
-                        CASE WHEN seconds >= 57600 THEN '16 and more'
-                            ELSE printf('%d … %d', 4 * (seconds / 14400), 4 * (seconds / 14400 + 1)) END
-                    FROM classed
-                )
-                SELECT sorted_by, class, design, pmv_min, pmv_max, count(*),
-                    sum(mean_hvac_power_w * seconds) / sum(seconds), sum(static_mean_hvac_power_w * seconds) / sum(seconds),
-                    sum(warm_w * seconds) / sum(seconds), avg(max_abs_pmv_15min),
-                    sum(saturated_fraction * seconds) / sum(seconds)
-                FROM all_classed AS a
-                JOIN hvac_design AS d ON d.name = a.design
-                JOIN comfort_window AS w USING (pmv_min, pmv_max)
-                GROUP BY d.position, w.position, sorting, place
-                ORDER BY d.position, w.position, sorting, place";
-            let rows = sqlx::query(sql).fetch_all(c).await?;
-            rows.iter()
-                .map(|r| {
-                    Ok(SimulatedClass {
-                        sorted_by: r.try_get(0)?,
-                        class: r.try_get(1)?,
-                        design: r.try_get(2)?,
-                        pmv_min: r.try_get(3)?,
-                        pmv_max: r.try_get(4)?,
-                        mission_count: r.try_get::<i64, _>(5)?.cast_unsigned(),
-                        mean_hvac_power_w: r.try_get(6)?,
-                        static_mean_hvac_power_w: r.try_get(7)?,
-                        warm_start_power_w: r.try_get(8)?,
-                        mean_max_abs_pmv: r.try_get(9)?,
-                        saturated_fraction: r.try_get(10)?,
-                    })
-                })
-                .collect()
+        let sql = "SELECT a.* FROM simulation_class AS a
+            JOIN hvac_design AS d ON d.name = a.design JOIN comfort_window AS w USING (pmv_min, pmv_max)
+            ORDER BY d.position, w.position, a.class_order";
+        self.select(sql, |r| {
+            Ok(SimulatedClass {
+                sorted_by: r.try_get("sorted_by")?,
+                class: r.try_get("class")?,
+                design: r.try_get("design")?,
+                window: window(r)?,
+                mission_count: count(r, "mission_count")?,
+                mean_hvac_power_w: r.try_get("mean_hvac_power_w")?,
+                static_mean_hvac_power_w: r.try_get("static_mean_hvac_power_w")?,
+                warm_start_power_w: r.try_get("warm_start_power_w")?,
+                mean_max_abs_pmv: r.try_get("mean_max_abs_pmv_15min")?,
+                saturated_fraction: r.try_get("saturated_fraction")?,
+            })
         })
     }
 
-    /// Forgets simulated missions.
+    /// The view `simulation_failure`, by mission and in the order of the study.
     ///
     /// # Errors
     /// [`StoreError::Statement`].
-    pub fn forget_simulations(&mut self, ids: &[SimulationId]) -> Result<(), StoreError> {
-        self.drive(async |c| {
-            let mut tx = c.begin().await?;
-            for (path, design, window) in ids {
-                let sql = "DELETE FROM simulated_mission WHERE design_id = ? AND window_id = ?
-                    AND source_file_id = (SELECT source_file_id FROM source_file WHERE path = ?)";
-                sqlx::query(sql).bind(design).bind(window).bind(path).execute(&mut *tx).await?;
-            }
-            Ok(tx.commit().await?)
+    pub fn simulation_failures(&mut self) -> Result<Vec<SimulationFailure>, StoreError> {
+        let sql = "SELECT a.* FROM simulation_failure AS a
+            JOIN hvac_design AS d ON d.name = a.design JOIN comfort_window AS w USING (pmv_min, pmv_max)
+            ORDER BY a.mission, d.position, w.position";
+        self.select(sql, |r| {
+            Ok(SimulationFailure {
+                mission: r.try_get("mission")?,
+                design: r.try_get("design")?,
+                window: window(r)?,
+                reason: r.try_get("reason")?,
+            })
         })
     }
+}
 
-    /// Writes simulated missions in one transaction; a row that is there is replaced.
-    ///
-    /// # Errors
-    /// [`StoreError::Statement`].
-    pub fn put_simulations(&mut self, rows: &[SimulationRow]) -> Result<(), StoreError> {
-        self.drive(async |c| {
-            let mut tx = c.begin().await?;
-            for r in rows {
-                let sql = "INSERT OR REPLACE INTO simulated_mission VALUES
-                    ((SELECT source_file_id FROM source_file WHERE path = ?), ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)";
-                sqlx::query(sql)
-                    .bind(&r.source_path)
-                    .bind(r.design_id)
-                    .bind(r.window_id)
-                    .bind(r.controller)
-                    .bind(&r.simulation_key)
-                    .bind(&r.mission)
-                    .bind(r.month)
-                    .bind(r.ambient_k)
-                    .bind(r.seconds)
-                    .bind(r.mean_hvac_power_w)
-                    .bind(r.static_mean_hvac_power_w)
-                    .bind(r.max_abs_pmv_15min)
-                    .bind(r.static_max_abs_pmv)
-                    .bind(r.saturated_fraction)
-                    .bind(r.tracking_error_k)
-                    .execute(&mut *tx)
+async fn forget(c: &mut SqliteConnection, grid: &StoredGrid, id: &SimulationId) -> Result<(), StoreError> {
+    for sql in [
+        "DELETE FROM simulated_mission WHERE design_id = ? AND window_id = ?
+            AND source_file_id = (SELECT source_file_id FROM source_file WHERE path = ?)",
+        "DELETE FROM unsimulated_mission WHERE design_id = ? AND window_id = ?
+            AND source_file_id = (SELECT source_file_id FROM source_file WHERE path = ?)",
+    ] {
+        sqlx::query(sql)
+            .bind(grid.design_ids[id.design])
+            .bind(grid.window_ids[id.window])
+            .bind(&id.source_path)
+            .execute(&mut *c)
+            .await?;
+    }
+    Ok(())
+}
+
+async fn put(c: &mut SqliteConnection, grid: &StoredGrid, file: i64, row: &SimulationRow) -> Result<(), StoreError> {
+    let keyed = |table| {
+        Insert::into(table)
+            .set("source_file_id", file)?
+            .set("design_id", grid.design_ids[row.id.design])?
+            .set("window_id", grid.window_ids[row.id.window])?
+            .set("simulation_key", row.key.as_str())?
+            .set("mission", row.mission.as_str())
+    };
+    match &row.result {
+        Err(reason) => {
+            keyed("unsimulated_mission")?.set("reason", reason.as_str())?.execute(c).await?;
+        }
+        Ok(replays) => {
+            for (replay, s) in replays {
+                keyed("simulated_mission")?
+                    .set("controller", replay.name)?
+                    .set("month", row.month)?
+                    .set("ambient_k", row.ambient_k)?
+                    .set("seconds", s.seconds)?
+                    .set("mean_hvac_power_w", s.mean_hvac_power_w)?
+                    .set("static_mean_hvac_power_w", s.static_mean_hvac_power_w)?
+                    .set("max_abs_pmv_15min", s.max_abs_pmv_15min)?
+                    .set("static_max_abs_pmv", s.static_max_abs_pmv)?
+                    .set("saturated_fraction", s.saturated_fraction)?
+                    .set("tracking_error_k", s.tracking_error_k)?
+                    .execute(c)
                     .await?;
             }
-            Ok(tx.commit().await?)
-        })
+        }
     }
-}
-
-pub(crate) fn encode_loads(loads: &[LoadRow]) -> Vec<u8> {
-    let mut bytes = Vec::with_capacity(loads.len() * LOAD_BYTES);
-    for load in loads {
-        bytes.extend(load.second.to_le_bytes());
-        bytes.extend(load.passengers.to_le_bytes());
-        bytes.push(u8::from(load.door_open));
-    }
-    bytes
-}
-
-fn decode(bytes: &[u8]) -> LoadRow {
-    let second = std::array::from_fn(|i| bytes[i]);
-    let passengers = std::array::from_fn(|i| bytes[4 + i]);
-    LoadRow {
-        second: u32::from_le_bytes(second),
-        passengers: f64::from_le_bytes(passengers),
-        door_open: bytes[12] != 0,
-    }
+    Ok(())
 }

@@ -1,7 +1,8 @@
 //! The record of verifications.
 
-use sqlx::{Connection, Row};
+use sqlx::Connection;
 
+use crate::row::Insert;
 use crate::{Store, StoreError};
 
 /// A verification of stored points.
@@ -51,32 +52,28 @@ impl Store {
         let violations: u64 = verification.checks.iter().map(|c| c.violations).sum();
         self.drive(async |c| {
             let mut tx = c.begin().await?;
-            let sql = "INSERT INTO verification
-                    (finished_utc, program_version, study_hash, fraction, seed, point_count, violation_count)
-                VALUES (?, ?, ?, ?, ?, ?, ?) RETURNING verification_id";
-            let row = sqlx::query(sql)
-                .bind(&verification.finished_utc)
-                .bind(&verification.program_version)
-                .bind(&verification.study_hash)
-                .bind(verification.fraction)
-                .bind(verification.seed.cast_signed())
-                .bind(verification.points.cast_signed())
-                .bind(violations.cast_signed())
-                .fetch_one(&mut *tx)
+            let id = Insert::into("verification")
+                .set("finished_utc", verification.finished_utc.as_str())?
+                .set("program_version", verification.program_version.as_str())?
+                .set("study_hash", verification.study_hash.as_str())?
+                .set("fraction", verification.fraction)?
+                .set("seed", verification.seed.cast_signed())?
+                .set("point_count", verification.points.cast_signed())?
+                .set("violation_count", violations.cast_signed())?
+                .execute(&mut tx)
                 .await?;
-            let id: i64 = row.try_get(0)?;
             for (position, check) in verification.checks.iter().enumerate() {
-                sqlx::query("INSERT INTO verification_check VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)")
-                    .bind(id)
-                    .bind(position as i64)
-                    .bind(&check.name)
-                    .bind(check.checked.cast_signed())
-                    .bind(check.violations.cast_signed())
-                    .bind(check.largest)
-                    .bind(&check.unit)
-                    .bind(&check.tolerance)
-                    .bind(&check.first_violation)
-                    .execute(&mut *tx)
+                Insert::into("verification_check")
+                    .set("verification_id", id)?
+                    .set("position", position as i64)?
+                    .set("name", check.name.as_str())?
+                    .set("checked_count", check.checked.cast_signed())?
+                    .set("violation_count", check.violations.cast_signed())?
+                    .set("largest", check.largest)?
+                    .set("unit", check.unit.as_str())?
+                    .set("tolerance", check.tolerance.as_str())?
+                    .set("first_violation", check.first_violation.as_deref())?
+                    .execute(&mut tx)
                     .await?;
             }
             tx.commit().await?;

@@ -1,21 +1,19 @@
 //! What reports, `status` and `show` read: the views of the schema as plain rows.
 
+use cabin::ComfortWindow;
 use sqlx::sqlite::SqliteRow;
 use sqlx::{AssertSqlSafe, Row};
 
-use crate::{FindingRow, Store, StoreError, StoredExclusion, StoredFinding};
+use crate::row::{count, window};
+use crate::{Store, StoreError};
 
 /// A row of `annual_average`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AnnualRow {
     /// Design.
     pub design: String,
-    /// Lower limit of the window.
-    pub pmv_min: f64,
-    /// Upper limit of the window.
-    pub pmv_max: f64,
-    /// The larger distance from neutral.
-    pub pmv_limit: f64,
+    /// Comfort window.
+    pub window: ComfortWindow,
     /// Annual mean power in W; `None` while nothing is solved.
     pub hvac_power_w: Option<f64>,
     /// Share of it while the air unit heats or rests, in W.
@@ -37,12 +35,8 @@ pub struct AnnualRow {
 pub struct MonthlyRow {
     /// Design.
     pub design: String,
-    /// Lower limit of the window.
-    pub pmv_min: f64,
-    /// Upper limit of the window.
-    pub pmv_max: f64,
-    /// The larger distance from neutral.
-    pub pmv_limit: f64,
+    /// Comfort window.
+    pub window: ComfortWindow,
     /// Local month, 1 … 12.
     pub month: u8,
     /// Mean power in W; `None` while nothing is solved.
@@ -67,10 +61,8 @@ pub struct MonthRow {
 pub struct LimitShare {
     /// Design.
     pub design: String,
-    /// Lower limit of the window.
-    pub pmv_min: f64,
-    /// Upper limit of the window.
-    pub pmv_max: f64,
+    /// Comfort window.
+    pub window: ComfortWindow,
     /// Solved samples.
     pub solved_count: u64,
     /// Samples at the lower limit.
@@ -109,36 +101,6 @@ pub struct ExclusionCount {
     pub count: u64,
 }
 
-/// A row of `source_file`.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct StoredFile {
-    /// Path as the study names it.
-    pub path: String,
-    /// `mission`, `weather` or `shadow`.
-    pub kind: String,
-    /// BLAKE3 of the content.
-    pub blake3: String,
-    /// Size in bytes.
-    pub bytes: u64,
-    /// Data rows.
-    pub rows: u64,
-    /// First time in the file.
-    pub first_utc: Option<String>,
-    /// Last time in the file.
-    pub last_utc: Option<String>,
-    /// Whether it is used.
-    pub accepted: bool,
-}
-
-/// A row of `sample` with what is needed to show it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct StoredSample {
-    /// Weight in the annual average.
-    pub weight: f64,
-    /// Path of the mission file.
-    pub source_path: String,
-}
-
 /// A stored optimum, as far as `show` compares it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OptimumRow {
@@ -156,25 +118,21 @@ impl Store {
     /// # Errors
     /// [`StoreError::Statement`].
     pub fn annual(&mut self) -> Result<Vec<AnnualRow>, StoreError> {
-        let sql = "SELECT a.design, a.pmv_min, a.pmv_max, a.pmv_limit, a.hvac_power_w, a.heating_power_w,
-                a.cooling_power_w, a.sample_count, a.unsolved_count, a.unsolved_weight, a.reduction_vs_ptc
-            FROM annual_average AS a
+        let sql = "SELECT a.* FROM annual_average AS a
             JOIN hvac_design AS d ON d.name = a.design
             JOIN comfort_window AS w ON w.pmv_min = a.pmv_min AND w.pmv_max = a.pmv_max
             ORDER BY d.position, w.position";
         self.select(sql, |r| {
             Ok(AnnualRow {
-                design: r.try_get(0)?,
-                pmv_min: r.try_get(1)?,
-                pmv_max: r.try_get(2)?,
-                pmv_limit: r.try_get(3)?,
-                hvac_power_w: r.try_get(4)?,
-                heating_power_w: r.try_get(5)?,
-                cooling_power_w: r.try_get(6)?,
-                sample_count: count(r, 7)?,
-                unsolved_count: count(r, 8)?,
-                unsolved_weight: r.try_get(9)?,
-                reduction_vs_ptc: r.try_get(10)?,
+                design: r.try_get("design")?,
+                window: window(r)?,
+                hvac_power_w: r.try_get("hvac_power_w")?,
+                heating_power_w: r.try_get("heating_power_w")?,
+                cooling_power_w: r.try_get("cooling_power_w")?,
+                sample_count: count(r, "sample_count")?,
+                unsolved_count: count(r, "unsolved_count")?,
+                unsolved_weight: r.try_get("unsolved_weight")?,
+                reduction_vs_ptc: r.try_get("reduction_vs_ptc")?,
             })
         })
     }
@@ -184,19 +142,16 @@ impl Store {
     /// # Errors
     /// [`StoreError::Statement`].
     pub fn monthly(&mut self) -> Result<Vec<MonthlyRow>, StoreError> {
-        let sql = "SELECT m.design, m.pmv_min, m.pmv_max, m.pmv_limit, m.month, m.hvac_power_w, m.sample_count
-            FROM monthly_average AS m
+        let sql = "SELECT m.* FROM monthly_average AS m
             JOIN hvac_design AS d USING (design_id) JOIN comfort_window AS w USING (window_id)
             ORDER BY d.position, w.position, m.month";
         self.select(sql, |r| {
             Ok(MonthlyRow {
-                design: r.try_get(0)?,
-                pmv_min: r.try_get(1)?,
-                pmv_max: r.try_get(2)?,
-                pmv_limit: r.try_get(3)?,
-                month: r.try_get(4)?,
-                hvac_power_w: r.try_get(5)?,
-                sample_count: count(r, 6)?,
+                design: r.try_get("design")?,
+                window: window(r)?,
+                month: r.try_get("month")?,
+                hvac_power_w: r.try_get("hvac_power_w")?,
+                sample_count: count(r, "sample_count")?,
             })
         })
     }
@@ -207,41 +162,34 @@ impl Store {
     /// [`StoreError::Statement`].
     pub fn months(&mut self) -> Result<Vec<MonthRow>, StoreError> {
         self.select("SELECT month, sample_count, sample_weight FROM month_weight ORDER BY month", |r| {
-            Ok(MonthRow { month: r.try_get(0)?, sample_count: count(r, 1)?, sample_weight: r.try_get(2)? })
+            Ok(MonthRow {
+                month: r.try_get("month")?,
+                sample_count: count(r, "sample_count")?,
+                sample_weight: r.try_get("sample_weight")?,
+            })
         })
     }
 
-    /// In how many samples the limits of comfort bind, for every design and window in the order of the study.
+    /// The view `limit_share`, in the order of the study.
     ///
     /// # Errors
     /// [`StoreError::Statement`].
     pub fn limit_shares(&mut self) -> Result<Vec<LimitShare>, StoreError> {
-        // A binding limit is met to rounding; the next state inside is many orders of magnitude away.
-        let sql = "SELECT d.name, w.pmv_min, w.pmv_max, count(*),
-                sum(p.pmv < w.pmv_min + 1e-6), sum(p.pmv > w.pmv_max - 1e-6),
-                sum(p.operating_mode = 1), sum(p.operating_mode = -1),
-                sum((p.pmv < w.pmv_min + 1e-6) * m.sample_weight) / sum(m.sample_weight),
-                sum((p.operating_mode = -1) * m.sample_weight) / sum(m.sample_weight),
-                sum(p.outside_standard_range)
-            FROM optimum_point AS p
-            JOIN hourly_sample AS s USING (sample_id)
-            JOIN month_weight AS m USING (month)
-            JOIN hvac_design AS d USING (design_id) JOIN comfort_window AS w USING (window_id)
-            WHERE p.status = 0
-            GROUP BY p.design_id, p.window_id ORDER BY d.position, w.position";
+        let sql = "SELECT s.* FROM limit_share AS s
+            JOIN hvac_design AS d ON d.name = s.design JOIN comfort_window AS w USING (pmv_min, pmv_max)
+            ORDER BY d.position, w.position";
         self.select(sql, |r| {
             Ok(LimitShare {
-                design: r.try_get(0)?,
-                pmv_min: r.try_get(1)?,
-                pmv_max: r.try_get(2)?,
-                solved_count: count(r, 3)?,
-                lower_count: count(r, 4)?,
-                upper_count: count(r, 5)?,
-                heating_count: count(r, 6)?,
-                cooling_count: count(r, 7)?,
-                lower_weight: r.try_get(8)?,
-                cooling_weight: r.try_get(9)?,
-                outside_range_count: count(r, 10)?,
+                design: r.try_get("design")?,
+                window: window(r)?,
+                solved_count: count(r, "solved_count")?,
+                lower_count: count(r, "lower_count")?,
+                upper_count: count(r, "upper_count")?,
+                heating_count: count(r, "heating_count")?,
+                cooling_count: count(r, "cooling_count")?,
+                lower_weight: r.try_get("lower_weight")?,
+                cooling_weight: r.try_get("cooling_weight")?,
+                outside_range_count: count(r, "outside_range_count")?,
             })
         })
     }
@@ -251,69 +199,16 @@ impl Store {
     /// # Errors
     /// [`StoreError::Statement`].
     pub fn status_counts(&mut self) -> Result<StatusCounts, StoreError> {
-        let sql = "SELECT coalesce(sum(status = 0), 0), coalesce(sum(status IN (1, 2)), 0),
-            coalesce(sum(status = 3), 0) FROM optimum_point";
+        let sql = "SELECT coalesce(sum(status = 0), 0) AS solved, coalesce(sum(status IN (1, 2)), 0) AS infeasible,
+            coalesce(sum(status = 3), 0) AS not_converged FROM optimum_point";
         let rows = self.select(sql, |r| {
-            Ok(StatusCounts { solved: count(r, 0)?, infeasible: count(r, 1)?, not_converged: count(r, 2)? })
+            Ok(StatusCounts {
+                solved: count(r, "solved")?,
+                infeasible: count(r, "infeasible")?,
+                not_converged: count(r, "not_converged")?,
+            })
         })?;
         Ok(rows.first().copied().unwrap_or_default())
-    }
-
-    /// The input files by kind and path.
-    ///
-    /// # Errors
-    /// [`StoreError::Statement`].
-    pub fn files(&mut self) -> Result<Vec<StoredFile>, StoreError> {
-        let sql = "SELECT path, kind, blake3, bytes, rows, first_utc, last_utc, outcome = 'accepted'
-            FROM source_file ORDER BY kind, path";
-        self.select(sql, |r| {
-            Ok(StoredFile {
-                path: r.try_get(0)?,
-                kind: r.try_get(1)?,
-                blake3: r.try_get(2)?,
-                bytes: count(r, 3)?,
-                rows: count(r, 4)?,
-                first_utc: r.try_get(5)?,
-                last_utc: r.try_get(6)?,
-                accepted: r.try_get(7)?,
-            })
-        })
-    }
-
-    /// What was noticed in the input files, by kind and path.
-    ///
-    /// # Errors
-    /// [`StoreError::Statement`].
-    pub fn findings(&mut self) -> Result<Vec<StoredFinding>, StoreError> {
-        let sql = "SELECT f.path, f.kind, q.kind, q.count, q.line, q.column_name, q.message
-            FROM data_quality AS q JOIN source_file AS f USING (source_file_id) ORDER BY f.kind, f.path, q.position";
-        self.select(sql, |r| {
-            let line: Option<i64> = r.try_get(4)?;
-            let finding = FindingRow {
-                kind: r.try_get(2)?,
-                count: count(r, 3)?,
-                line: line.map(i64::cast_unsigned),
-                column: r.try_get(5)?,
-                message: r.try_get(6)?,
-            };
-            Ok(StoredFinding { path: r.try_get(0)?, file_kind: r.try_get(1)?, finding })
-        })
-    }
-
-    /// Segments without a sample, by mission and number.
-    ///
-    /// # Errors
-    /// [`StoreError::Statement`].
-    pub fn exclusions(&mut self) -> Result<Vec<StoredExclusion>, StoreError> {
-        let sql = "SELECT mission, segment, start_utc, reason FROM excluded_segment ORDER BY mission, segment";
-        self.select(sql, |r| {
-            Ok(StoredExclusion {
-                mission: r.try_get(0)?,
-                segment: r.try_get(1)?,
-                start_utc: r.try_get(2)?,
-                reason: r.try_get(3)?,
-            })
-        })
     }
 
     /// Segments without a sample, counted by reason.
@@ -321,19 +216,19 @@ impl Store {
     /// # Errors
     /// [`StoreError::Statement`].
     pub fn exclusion_counts(&mut self) -> Result<Vec<ExclusionCount>, StoreError> {
-        let sql = "SELECT reason, count(*) FROM excluded_segment GROUP BY reason ORDER BY count(*) DESC, reason";
-        self.select(sql, |r| Ok(ExclusionCount { reason: r.try_get(0)?, count: count(r, 1)? }))
+        let sql = "SELECT reason, count(*) AS segment_count FROM excluded_segment
+            GROUP BY reason ORDER BY segment_count DESC, reason";
+        self.select(sql, |r| Ok(ExclusionCount { reason: r.try_get("reason")?, count: count(r, "segment_count")? }))
     }
 
-    /// Weight and source of a sample.
+    /// Weight of a sample in the annual average; `None` where there is no such sample.
     ///
     /// # Errors
     /// [`StoreError::Statement`].
-    pub fn sample_source(&mut self, sample_id: i64) -> Result<Option<StoredSample>, StoreError> {
+    pub fn sample_weight(&mut self, sample_id: i64) -> Result<Option<f64>, StoreError> {
         self.drive(async |c| {
-            let sql = "SELECT weight, source_path FROM sample WHERE sample_id = ?";
-            let Some(r) = sqlx::query(sql).bind(sample_id).fetch_optional(c).await? else { return Ok(None) };
-            Ok(Some(StoredSample { weight: r.try_get(0)?, source_path: r.try_get(1)? }))
+            let sql = "SELECT weight FROM sample WHERE sample_id = ?";
+            Ok(sqlx::query(sql).bind(sample_id).fetch_optional(c).await?.map(|r| r.try_get("weight")).transpose()?)
         })
     }
 
@@ -345,18 +240,17 @@ impl Store {
         &mut self,
         sample_id: i64,
         design: &str,
-        pmv_min: f64,
-        pmv_max: f64,
+        window: ComfortWindow,
     ) -> Result<Option<OptimumRow>, StoreError> {
         self.drive(async |c| {
             let sql = "SELECT status, hvac_power_w, runner_up_excess_w FROM optimum
                 WHERE sample_id = ? AND design = ? AND pmv_min = ? AND pmv_max = ?";
-            let query = sqlx::query(sql).bind(sample_id).bind(design).bind(pmv_min).bind(pmv_max);
+            let query = sqlx::query(sql).bind(sample_id).bind(design).bind(window.pmv_min()).bind(window.pmv_max());
             let Some(r) = query.fetch_optional(c).await? else { return Ok(None) };
             Ok(Some(OptimumRow {
-                status: r.try_get(0)?,
-                hvac_power_w: r.try_get(1)?,
-                runner_up_excess_w: r.try_get(2)?,
+                status: r.try_get("status")?,
+                hvac_power_w: r.try_get("hvac_power_w")?,
+                runner_up_excess_w: r.try_get("runner_up_excess_w")?,
             }))
         })
     }
@@ -382,7 +276,7 @@ impl Store {
         })
     }
 
-    fn select<T>(
+    pub(crate) fn select<T>(
         &mut self,
         sql: &'static str,
         row: impl Fn(&SqliteRow) -> Result<T, sqlx::Error>,
@@ -392,8 +286,4 @@ impl Store {
             Ok(rows.iter().map(row).collect::<Result<_, _>>()?)
         })
     }
-}
-
-fn count(row: &SqliteRow, column: usize) -> Result<u64, sqlx::Error> {
-    Ok(row.try_get::<i64, _>(column)?.cast_unsigned())
 }

@@ -2,15 +2,22 @@
 
 #![expect(clippy::unwrap_used, reason = "a test ends where something is not as expected")]
 
-use cabin::{StandardRange, Temperatures};
-use solve::{Infeasible, OperatingMode, Operation, Optimum, Outcome};
-use store::{
-    Counts, DesignRow, ExclusionRow, FileRow, FindingRow, PointId, RunEnd, SampleRow, SegmentRow, Store, StoreError,
-    WindowRow,
+use cabin::{
+    ComfortWindow, Devices, Disturbances, Heating, Infeasible, OperatingMode, Operation, Optimum, Outcome,
+    StandardRange, Temperatures,
 };
+use chrono::{DateTime, TimeDelta, Utc};
+use ingest::mission::{MissionReading, Segment};
+use ingest::sample::Sample;
+use ingest::{ExcludedSegment, FileKind, FileRecord, Finding, FindingKind};
+use proptest::prelude::*;
+use solve::Method;
+use store::{Counts, DesignRow, RunEnd, Store, StoreError};
 use tempfile::TempDir;
 
-const WINDOW: WindowRow = WindowRow { pmv_min: -1.0, pmv_max: 1.0, pmv_limit: 1.0 };
+fn window(limit: f64) -> ComfortWindow {
+    ComfortWindow::symmetric(limit).unwrap()
+}
 
 fn scratch() -> (TempDir, Store) {
     let folder = tempfile::tempdir().unwrap();
@@ -18,19 +25,22 @@ fn scratch() -> (TempDir, Store) {
     (folder, store)
 }
 
-fn file(path: &str, key: &str) -> FileRow {
-    FileRow {
+fn start() -> DateTime<Utc> {
+    "2022-01-05T05:00:00Z".parse().unwrap()
+}
+
+fn file(path: &str, kind: FileKind) -> FileRecord {
+    FileRecord {
         path: path.to_owned(),
-        kind: "mission".to_owned(),
+        kind,
         blake3: "b".repeat(64),
         bytes: 10,
         rows: 3600,
-        first_utc: Some("2022-01-05T05:00:00Z".to_owned()),
-        last_utc: None,
+        first: Some(start()),
+        last: None,
         accepted: true,
-        reading_key: key.to_owned(),
-        findings: vec![FindingRow {
-            kind: "time_gap".to_owned(),
+        findings: vec![Finding {
+            kind: FindingKind::TimeGap,
             count: 2,
             line: Some(7),
             column: None,
@@ -39,50 +49,70 @@ fn file(path: &str, key: &str) -> FileRow {
     }
 }
 
-fn segment(mission: &str, number: u32) -> SegmentRow {
-    SegmentRow {
-        mission: mission.to_owned(),
-        bus: 183,
-        segment: number,
-        start_utc: format!("2022-01-05T{:02}:00:00Z", 5 + number),
-        duration_s: 3600,
-        content: if number < 3 { Ok((10.5, 0.15, 2, 3601)) } else { Err("too short".to_owned()) },
-    }
-}
-
-fn sample(id: i64, path: &str, month: u8) -> SampleRow {
-    SampleRow {
-        sample_id: id,
+fn segment(path: &str, number: u32) -> Segment {
+    Segment {
         mission: format!("m{path}"),
         source_path: path.to_owned(),
         bus: 183,
-        segment: id as u32,
-        first_line: 2,
-        last_line: 3601,
-        start_utc: "2022-01-05T05:00:00Z".to_owned(),
+        segment: number,
+        start: start() + TimeDelta::hours(i64::from(number)),
         duration_s: 3600,
-        month,
-        ambient_temperature_k: 273.15 + id as f64,
-        dni_w_m2: 0.0,
-        dhi_w_m2: 0.0,
         passengers: 10.5,
         door_open_fraction: 0.15,
-        solar_altitude_rad: -std::f64::consts::FRAC_PI_6,
+        first_line: 2,
+        last_line: 3601,
+    }
+}
+
+fn excluded(path: &str, number: u32) -> ExcludedSegment {
+    ExcludedSegment {
+        mission: format!("m{path}"),
+        bus: 183,
+        segment: number,
+        start: start() + TimeDelta::hours(i64::from(number)),
+        duration_s: 1200,
+        reason: "too short".to_owned(),
+    }
+}
+
+fn mission(path: &str, segments: u32) -> MissionReading {
+    MissionReading {
+        file: file(path, FileKind::Mission),
+        segments: (0..segments).map(|n| segment(path, n)).collect(),
+        excluded: vec![excluded(path, segments)],
+        loads: Vec::new(),
+    }
+}
+
+fn sample(id: i64, path: &str, month: u8) -> Sample {
+    let segment = segment(path, id as u32);
+    Sample {
+        id,
+        month,
+        disturbances: Disturbances {
+            ambient_temperature_k: 273.15 + id as f64,
+            dni_w_m2: 0.0,
+            dhi_w_m2: 0.0,
+            solar_altitude_rad: -std::f64::consts::FRAC_PI_6,
+            shadow_fraction: 1.0,
+            passengers: segment.passengers,
+            door_open_fraction: segment.door_open_fraction,
+        },
         solar_azimuth_rad: std::f64::consts::FRAC_PI_2,
-        shadow_fraction: 1.0,
         interpolated_s: 0.0,
+        key: format!("key {id}"),
+        segment,
     }
 }
 
 fn design(name: &str, key: &str) -> DesignRow {
     DesignRow {
         name: name.to_owned(),
-        heating: "ptc".to_owned(),
+        heating: Heating::Ptc,
         heating_cop: "1".to_owned(),
         cooling_cop: "linear".to_owned(),
-        radiant_heaters: false,
-        air_curtain: false,
-        method: "fast".to_owned(),
+        devices: Devices::NONE,
+        method: Method::Fast,
         design_key: key.to_owned(),
     }
 }
@@ -91,8 +121,7 @@ fn solved(design: usize, mode: OperatingMode, power_w: f64) -> Optimum {
     let k = 290.15;
     let operation = Operation {
         mode,
-        air_curtain_on: false,
-        radiant_heaters_on: false,
+        devices: Devices::NONE,
         air_unit_power_w: power_w - 100.0,
         radiant_heater_power_w: 60.0,
         air_curtain_power_w: 40.0,
@@ -114,18 +143,12 @@ fn solved(design: usize, mode: OperatingMode, power_w: f64) -> Optimum {
 /// Two files, four samples in January and July, two designs, one window.
 fn filled(store: &mut Store) {
     for path in ["a", "b"] {
-        let segments: Vec<SegmentRow> = (0..4).map(|n| segment(&format!("m{path}"), n)).collect();
-        store.put_file(&file(path, "k1"), &segments).unwrap();
+        store.put_mission(&mission(path, 3), "k1").unwrap();
     }
     let samples = [sample(1, "a", 1), sample(2, "a", 1), sample(3, "b", 1), sample(4, "b", 7)];
-    let exclusion = ExclusionRow {
-        mission: "ma".to_owned(),
-        segment: 3,
-        start_utc: "2022-01-05T08:00:00Z".to_owned(),
-        reason: "too short".to_owned(),
-    };
-    assert_eq!(store.put_samples(&samples, &[exclusion]).unwrap(), (4, 0));
-    let change = store.put_study(&[design("ptc", "x"), design("hp", "y")], &[WINDOW]).unwrap();
+    let weather = (file("w", FileKind::Weather), "wk".to_owned());
+    assert_eq!(store.put_samples(&samples, &[excluded("a", 3)], &[weather]).unwrap(), (4, 0));
+    let change = store.put_grid(&[design("ptc", "x"), design("hp", "y")], &[window(1.0)]).unwrap();
     assert_eq!(change.changed_designs, ["ptc", "hp"]);
     let heating = [1000.0, 2000.0, 3000.0];
     let mut points = Vec::new();
@@ -136,11 +159,16 @@ fn filled(store: &mut Store) {
                 (3, _) => solved(d, OperatingMode::Cooling, 500.0),
                 _ => solved(d, OperatingMode::Heating, heating[i] / (1 + d) as f64),
             };
-            let (design_id, window_id) = (change.design_ids[d], change.window_ids[0]);
-            points.push((PointId { sample_id: sample.sample_id, design_id, window_id }, optimum));
+            points.push((sample.id, optimum));
         }
     }
-    store.put_optima(&[], points.iter().map(|(id, optimum)| (*id, optimum, None))).unwrap();
+    store.put_optima(&change.grid, &[], points.iter().map(|(id, optimum)| (*id, optimum, None))).unwrap();
+    let stored = store.optima(&change.grid, 1, 4).unwrap();
+    assert_eq!(stored.len(), points.len());
+    for (row, (id, optimum)) in stored.iter().zip(&points) {
+        assert_eq!((row.sample_id, row.design, row.window), (*id, optimum.design, optimum.window));
+        assert_eq!(row.outcome, Some(optimum.outcome));
+    }
 }
 
 #[test]
@@ -188,13 +216,23 @@ fn prop_a_changed_file_takes_its_samples_and_optima_along_and_an_unchanged_one_d
     let (_folder, mut store) = scratch();
     filled(&mut store);
     let points = |store: &mut Store| store.query_text("SELECT count(*) FROM optimum").unwrap()[0][0].clone();
-    store.put_file(&file("a", "k1"), &[segment("ma", 0)]).unwrap();
+    store.put_mission(&mission("a", 1), "k1").unwrap();
     assert_eq!(points(&mut store), "8");
-    store.put_file(&file("a", "k2"), &[segment("ma", 0)]).unwrap();
+    store.put_mission(&mission("a", 1), "k2").unwrap();
     assert_eq!(points(&mut store), "4");
-    assert_eq!(store.keep_files("mission", &["a".to_owned()]).unwrap(), 1);
+    // Its two segments wait for weather again, beside three of the other mission.
+    assert_eq!(store.unjoined_segments().unwrap(), 5);
+    assert_eq!(store.keep_files(FileKind::Mission, &["a".to_owned()]).unwrap(), 1);
     assert_eq!(points(&mut store), "0");
     assert!(store.query_text("PRAGMA foreign_key_check").unwrap().is_empty());
+}
+
+#[test]
+fn prop_segments_come_back_as_they_were() {
+    let (_folder, mut store) = scratch();
+    store.put_mission(&mission("a", 2), "k1").unwrap();
+    let expected = [Ok(segment("a", 0)), Ok(segment("a", 1)), Err(excluded("a", 2))];
+    assert_eq!(store.segments().unwrap(), expected.map(|s| ("k1".to_owned(), s)));
 }
 
 #[test]
@@ -202,43 +240,75 @@ fn prop_samples_become_exactly_those_given_and_equal_ones_keep_their_optima() {
     let (_folder, mut store) = scratch();
     filled(&mut store);
     let mut samples = store.samples().unwrap();
-    assert_eq!(samples.len(), 4);
-    assert_eq!(store.put_samples(&samples, &[]).unwrap(), (0, 0));
+    assert_eq!(samples, [sample(1, "a", 1), sample(2, "a", 1), sample(3, "b", 1), sample(4, "b", 7)]);
+    assert_eq!(store.put_samples(&samples, &[], &[]).unwrap(), (0, 0));
+    assert!(store.reading_keys(FileKind::Weather).unwrap().is_empty(), "the samples are joined with no file now");
+    // Made from something else that gives the same values: the optima stay, the key is new.
+    "other".clone_into(&mut samples[1].key);
+    assert_eq!(store.put_samples(&samples, &[], &[]).unwrap(), (0, 0));
+    assert_eq!(store.samples().unwrap()[1].key, "other");
     samples.remove(3);
-    samples[0].passengers = 11.0;
-    assert_eq!(store.put_samples(&samples, &[]).unwrap(), (1, 1));
+    samples[0].disturbances.passengers = 11.0;
+    samples[0].segment.passengers = 11.0;
+    assert_eq!(store.put_samples(&samples, &[], &[]).unwrap(), (1, 1));
     let left = store.query_text("SELECT DISTINCT sample_id FROM optimum ORDER BY sample_id").unwrap();
     assert_eq!(left, [["2"], ["3"]]);
     assert_eq!(store.complete_samples(2).unwrap().into_iter().collect::<Vec<_>>(), [2, 3]);
-    assert!(store.exclusions().unwrap().is_empty());
+    assert!(store.exclusion_counts().unwrap().is_empty());
     let stranger = sample(9, "nowhere", 1);
-    assert!(matches!(store.put_samples(&[stranger], &[]), Err(StoreError::UnknownFile(_))));
+    assert!(matches!(store.put_samples(&[stranger], &[], &[]), Err(StoreError::UnknownFile(_))));
 }
 
 #[test]
 fn prop_a_changed_design_alone_loses_its_optima() {
     let (_folder, mut store) = scratch();
     filled(&mut store);
-    let same = store.put_study(&[design("ptc", "x"), design("hp", "y")], &[WINDOW]).unwrap();
+    let same = store.put_grid(&[design("ptc", "x"), design("hp", "y")], &[window(1.0)]).unwrap();
     assert!(same.changed_designs.is_empty());
-    let change = store.put_study(&[design("hp", "z"), design("ptc", "x")], &[WINDOW]).unwrap();
+    assert_eq!(store.grid().unwrap(), same.grid);
+    let change = store.put_grid(&[design("hp", "z"), design("ptc", "x")], &[window(1.0)]).unwrap();
     assert_eq!(change.changed_designs, ["hp"]);
     let left = store.query_text("SELECT design, count(*) FROM optimum GROUP BY design").unwrap();
     assert_eq!(left, [["ptc", "4"]]);
-    let narrower = WindowRow { pmv_min: -0.5, pmv_max: 0.5, pmv_limit: 0.5 };
-    assert_eq!(store.put_study(&[design("ptc", "x")], &[narrower]).unwrap().removed, 2);
+    assert_eq!(store.put_grid(&[design("ptc", "x")], &[window(0.5)]).unwrap().removed, 2);
     assert_eq!(store.query_text("SELECT count(*) FROM optimum").unwrap(), [["0"]]);
 }
 
 #[test]
 fn prop_text_survives_whatever_it_holds() {
     let (_folder, mut store) = scratch();
-    let hostile = "x'; DROP TABLE source_file; --\n\"<script>";
-    store.put_file(&file(hostile, "k"), &[]).unwrap();
-    let files = store.files().unwrap();
-    assert_eq!((files.len(), files[0].path.as_str()), (1, hostile));
-    assert_eq!(store.findings().unwrap()[0].finding, file("", "").findings[0]);
-    assert_eq!(store.known_files("mission").unwrap()[0].reading_key, "k");
+    let hostile = file("x'; DROP TABLE source_file; --\n\"<script>", FileKind::Mission);
+    store.put_file(&hostile, "k").unwrap();
+    assert_eq!(store.files().unwrap(), std::slice::from_ref(&hostile));
+    assert_eq!(store.reading_keys(FileKind::Mission).unwrap()[&hostile.path], "k");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(12))]
+    #[test]
+    fn prop_weights_of_the_months_present_sum_to_one(counts in prop::array::uniform12(0_u8..9)) {
+        let (_folder, mut store) = scratch();
+        store.put_mission(&mission("a", 0), "k").unwrap();
+        let months = counts.iter().enumerate().flat_map(|(m, &n)| vec![m as u8 + 1; usize::from(n)]);
+        let samples: Vec<Sample> = months.enumerate().map(|(i, month)| sample(i as i64, "a", month)).collect();
+        store.put_samples(&samples, &[], &[]).unwrap();
+        let weights: f64 = store.months().unwrap().iter().map(|m| m.sample_weight * m.sample_count as f64).sum();
+        prop_assert!(samples.is_empty() || (weights - 1.0).abs() < 1e-12, "{weights}");
+        prop_assert_eq!(store.months().unwrap().len(), counts.iter().filter(|&&n| n > 0).count());
+    }
+}
+
+#[test]
+fn paper_the_weight_of_a_sample_is_the_days_of_its_month_over_365_and_samples() {
+    let (_folder, mut store) = scratch();
+    store.put_mission(&mission("a", 0), "k").unwrap();
+    let months = (1..=12_u8).flat_map(|month| vec![month; usize::from(month)]);
+    let samples: Vec<Sample> = months.enumerate().map(|(i, month)| sample(i as i64, "a", month)).collect();
+    store.put_samples(&samples, &[], &[]).unwrap();
+    let weights = store.months().unwrap();
+    assert!((weights[0].sample_weight - 31.0 / 365.0).abs() < 1e-15);
+    assert!((weights[1].sample_weight - 28.0 / 365.0 / 2.0).abs() < 1e-15);
+    assert!((weights[11].sample_weight - 31.0 / 365.0 / 12.0).abs() < 1e-15);
 }
 
 #[test]

@@ -4,6 +4,7 @@
 #![allow(dead_code, reason = "every test file uses its own part of these")]
 
 use assert_cmd::Command;
+use sqlx::{Connection, SqliteConnection};
 use std::path::{Path, PathBuf};
 use store::Store;
 use tempfile::TempDir;
@@ -84,6 +85,18 @@ impl Scratch {
 
     pub fn query(&self, sql: &str) -> Vec<Vec<String>> {
         Store::open_read_only(&self.path("study.db")).unwrap().query_text(sql).unwrap()
+    }
+
+    /// Changes the database behind the program's back.
+    pub fn tamper(&self, sql: &'static str) {
+        let url = format!("sqlite://{}", self.path("study.db").display());
+        let runtime = tokio::runtime::Builder::new_current_thread().enable_time().build().unwrap();
+        runtime.block_on(async {
+            let mut connection = SqliteConnection::connect(&url).await.unwrap();
+            let done = sqlx::query(sql).execute(&mut connection).await.unwrap();
+            assert!(done.rows_affected() > 0, "{sql}");
+            connection.close().await.unwrap();
+        });
     }
 
     /// All files of the report.

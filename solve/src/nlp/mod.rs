@@ -6,6 +6,7 @@
 //! [`Variable`], the five balances and one vanishing constraint as equations, the comfort window, and the signs of the two
 //! heats as inequalities.
 
+mod iso7730;
 mod problem;
 mod quadratic;
 mod solver;

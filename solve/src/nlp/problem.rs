@@ -2,7 +2,7 @@
 //!
 //! Temperatures in K, heat flows and powers in kW, so that all variables and residuals are of like size.
 
-use cabin::{ComfortWindow, Cop, Design, Disturbances, PassengerViews, SolarGains, Vehicle};
+use cabin::{ComfortWindow, Cop, Design, Devices, Disturbances, PassengerViews, SolarGains, Vehicle};
 use num_dual::{Dual2_64, DualNum};
 
 use super::vote::{MeanVote, Vote, VoteForm};
@@ -129,8 +129,7 @@ pub(crate) struct Problem<'a> {
     pub model: &'a SampleModel<'a>,
     pub design: &'a Design,
     pub window: ComfortWindow,
-    pub curtain: bool,
-    pub heaters: bool,
+    pub devices: Devices,
 }
 
 /// Values and first derivatives at a point.
@@ -164,7 +163,7 @@ const POWER: usize = Variable::RadiantHeaterPower as usize;
 impl Problem<'_> {
     /// The one equation that the choice of heaters adds: which variable has which value (eq. `rh-target`, `rh-req`).
     pub fn vanishing(&self) -> (usize, f64) {
-        if self.heaters { (HEATER, self.model.target_k) } else { (POWER, 0.0) }
+        if self.devices.radiant_heaters { (HEATER, self.model.target_k) } else { (POWER, 0.0) }
     }
 
     pub fn values(&self, x: &[f64; N]) -> Values {
@@ -176,13 +175,15 @@ impl Problem<'_> {
         let (heat, cool) = (cop(&self.design.heating_cop, lift).recip(), cop(&self.design.cooling_cop, -lift).recip());
         v.per_heat = [heat.re, heat.v1, heat.v2];
         v.per_cool = [cool.re, cool.v1, cool.v2];
-        v.power_kw = x[HEAT] * heat.re - x[COOL] * cool.re + x[POWER] + if self.curtain { m.curtain_kw } else { 0.0 };
+        v.power_kw = x[HEAT] * heat.re - x[COOL] * cool.re
+            + x[POWER]
+            + if self.devices.air_curtain { m.curtain_kw } else { 0.0 };
         v.power_gradient[CABIN] = x[HEAT] * heat.v1 - x[COOL] * cool.v1;
         v.power_gradient[HEAT] = heat.re;
         v.power_gradient[COOL] = -cool.re;
         v.power_gradient[POWER] = 1.0;
 
-        let door = m.door_kw(x[CABIN], self.curtain);
+        let door = m.door_kw(x[CABIN], self.devices.air_curtain);
         v.door_second = door.v2;
         v.balances_kw[0] = x[POWER];
         v.balance_rows[0][POWER] = 1.0;

@@ -1,13 +1,16 @@
 //! The programs of one sample for all designs and windows, and the cheapest of each four.
 
-use cabin::{Cabin, Disturbances, PassengerViews, Temperatures, Vehicle};
-use rayon::prelude::*;
+use cabin::{
+    Cabin, Devices, Disturbances, Infeasible, OperatingMode, Operation, Optimum, Outcome, PassengerViews, Temperatures,
+    Vehicle,
+};
 
 use super::problem::{DoorLaw, N, Problem, SampleModel, Variable};
 use super::quadratic::{Multipliers, Quadratic};
 use super::sqp::{self, End, Ended};
 use super::vote::VoteForm;
-use crate::{Grid, Infeasible, OperatingMode, Operation, Optimum, Outcome};
+use crate::Grid;
+use crate::blocks::in_blocks;
 
 /// Heat below this in kW is none: the least that a KKT residual of 1e-8 can tell from zero, with room to spare.
 const NO_HEAT_KW: f64 = 1e-6;
@@ -48,16 +51,12 @@ impl<'a> NlpSolver<'a> {
 
     /// Solves every design and window for one sample, in the order of [`crate::SampleSolver::solve`]. A window starts from
     /// the one before it; the first from nothing.
-    pub fn solve(&mut self, disturbances: &Disturbances, optima: &mut [Optimum], efforts: &mut [Effort]) {
+    pub fn solve(&mut self, disturbances: &Disturbances, results: &mut [(Optimum, Effort)]) {
         // A solver scales by the first numbers it sees; a new one a sample keeps results free of what came before.
         self.quadratic = Quadratic::new();
         let windows = self.grid.windows().len();
-        for (i, optimum) in optima.iter_mut().enumerate() {
-            *optimum = Optimum { design: i / windows, window: i % windows, outcome: Outcome::NotConverged };
-        }
-        for d in 0..self.grid.designs().len() {
-            let range = d * windows..(d + 1) * windows;
-            self.solve_design(disturbances, d, &mut optima[range.clone()], &mut efforts[range]);
+        for (design, results) in results.chunks_mut(windows).enumerate() {
+            self.solve_design(disturbances, design, results);
         }
     }
 
@@ -66,21 +65,21 @@ impl<'a> NlpSolver<'a> {
         self.quadratic = Quadratic::new();
         let model = SampleModel::new(self.vehicle, self.views, disturbances, self.form, self.door_law);
         let mut best = Best::default();
-        for (curtain, heaters) in self.choices(design) {
-            let problem = self.problem(&model, design, window, curtain, heaters);
+        for devices in self.choices(design) {
+            let problem = self.problem(&model, design, window, devices);
             let end = sqp::solve(&problem, &mut self.quadratic, sqp::cold_start(&problem), Multipliers::default());
             best.take(&problem, &end);
         }
         (best.outcome(self.vehicle, self.views, disturbances), best.effort)
     }
 
-    fn solve_design(&mut self, d: &Disturbances, design: usize, optima: &mut [Optimum], efforts: &mut [Effort]) {
+    fn solve_design(&mut self, d: &Disturbances, design: usize, results: &mut [(Optimum, Effort)]) {
         let model = SampleModel::new(self.vehicle, self.views, d, self.form, self.door_law);
-        let mut bests = vec![Best::default(); optima.len()];
-        for (curtain, heaters) in self.choices(design) {
+        let mut bests = vec![Best::default(); results.len()];
+        for devices in self.choices(design) {
             let mut neighbour: Option<End> = None;
             for (window, best) in bests.iter_mut().enumerate() {
-                let problem = self.problem(&model, design, window, curtain, heaters);
+                let problem = self.problem(&model, design, window, devices);
                 let (x, multipliers) = match &neighbour {
                     Some(end) if end.ended == Ended::Solved => (end.x, end.multipliers),
                     _ => (sqp::cold_start(&problem), Multipliers::default()),
@@ -90,40 +89,31 @@ impl<'a> NlpSolver<'a> {
                 neighbour = Some(end);
             }
         }
-        for ((best, optimum), effort) in bests.iter().zip(optima).zip(efforts) {
-            optimum.outcome = best.outcome(self.vehicle, self.views, d);
-            *effort = best.effort;
+        for (window, (best, result)) in bests.iter().zip(results).enumerate() {
+            let outcome = best.outcome(self.vehicle, self.views, d);
+            *result = (Optimum { design, window, outcome }, best.effort);
         }
     }
 
-    fn choices(&self, design: usize) -> impl Iterator<Item = (bool, bool)> + use<> {
-        let design = &self.grid.designs()[design];
-        let (curtain, heaters) = (design.air_curtain, design.radiant_heaters);
-        [(false, false), (true, false), (false, true), (true, true)]
-            .into_iter()
-            .filter(move |&(c, h)| (curtain || !c) && (heaters || !h))
+    /// The choices that a design has. Curtain before heaters: among equally cheap programs the first one wins.
+    fn choices(&self, design: usize) -> impl Iterator<Item = Devices> + use<> {
+        let devices = self.grid.designs()[design].devices;
+        Devices::CHOICES.into_iter().filter(move |&choice| devices.include(choice))
     }
 
-    fn problem<'m>(
-        &self,
-        model: &'m SampleModel<'m>,
-        design: usize,
-        window: usize,
-        curtain: bool,
-        heaters: bool,
-    ) -> Problem<'m>
+    fn problem<'m>(&self, model: &'m SampleModel<'m>, design: usize, window: usize, devices: Devices) -> Problem<'m>
     where
         'a: 'm,
     {
         let grid: &'a Grid = self.grid;
-        Problem { model, design: &grid.designs()[design], window: grid.windows()[window], curtain, heaters }
+        Problem { model, design: &grid.designs()[design], window: grid.windows()[window], devices }
     }
 }
 
 /// The cheapest of the programs so far.
 #[derive(Debug, Clone, Copy, Default)]
 struct Best {
-    end: Option<(End, bool, bool)>,
+    end: Option<(End, Devices)>,
     second_kw: Option<f64>,
     effort: Effort,
     lost: bool,
@@ -149,7 +139,7 @@ impl Best {
                 let second_kw = match self.end {
                     Some((best, ..)) if best.power_kw <= end.power_kw => Some(end.power_kw),
                     before => {
-                        self.end = Some((*end, problem.curtain, problem.heaters));
+                        self.end = Some((*end, problem.devices));
                         before.map(|(best, ..)| best.power_kw)
                     }
                 };
@@ -164,9 +154,9 @@ impl Best {
     fn outcome(&self, vehicle: &Vehicle, views: &PassengerViews, d: &Disturbances) -> Outcome {
         match (self.lost, self.end, self.infeasible) {
             (true, ..) => Outcome::NotConverged,
-            (false, Some((end, curtain, heaters)), _) => {
+            (false, Some((end, devices)), _) => {
                 let gap_w = self.second_kw.map(|second| 1e3 * (second - end.power_kw));
-                Outcome::Solved(operation(&end, curtain, heaters, vehicle, views, d), gap_w)
+                Outcome::Solved(operation(&end, devices, vehicle, views, d), gap_w)
             }
             (false, None, Some(reason)) => Outcome::Infeasible(reason),
             (false, None, None) => Outcome::NotConverged,
@@ -175,14 +165,7 @@ impl Best {
 }
 
 /// The operation that a solved program stands for.
-fn operation(
-    end: &End,
-    curtain: bool,
-    heaters: bool,
-    vehicle: &Vehicle,
-    views: &PassengerViews,
-    d: &Disturbances,
-) -> Operation {
+fn operation(end: &End, devices: Devices, vehicle: &Vehicle, views: &PassengerViews, d: &Disturbances) -> Operation {
     let x: &[f64; N] = &end.x;
     let at = |variable: Variable| x[variable as usize];
     let cabin = Cabin::new(vehicle, views, d);
@@ -199,16 +182,15 @@ fn operation(
         kw if kw < -NO_HEAT_KW => (OperatingMode::Cooling, 1e3 * kw),
         _ => (OperatingMode::Passive, 0.0),
     };
-    let radiant_heater_power_w = if heaters { 1e3 * at(Variable::RadiantHeaterPower) } else { 0.0 };
-    let air_curtain_power_w = if curtain { cabin.air_curtain_power_w() } else { 0.0 };
+    let radiant_heater_power_w = if devices.radiant_heaters { 1e3 * at(Variable::RadiantHeaterPower) } else { 0.0 };
+    let air_curtain_power_w = if devices.air_curtain { cabin.air_curtain_power_w() } else { 0.0 };
     let air_unit_power_w = match mode {
         OperatingMode::Passive => 0.0,
         _ => 1e3 * end.power_kw - radiant_heater_power_w - air_curtain_power_w,
     };
     Operation {
         mode,
-        air_curtain_on: curtain,
-        radiant_heaters_on: heaters,
+        devices,
         air_unit_power_w,
         radiant_heater_power_w,
         air_curtain_power_w,
@@ -230,31 +212,10 @@ pub fn nlp_blocks(
     samples: &[Disturbances],
     form: &VoteForm,
     door_law: DoorLaw,
-    mut consume: impl FnMut(usize, &[Optimum], &[Effort]) -> bool,
+    consume: impl FnMut(usize, &[(Optimum, Effort)]) -> bool,
 ) -> bool {
     let views = PassengerViews::new(vehicle);
-    let points = grid.points();
-    let unsolved = Optimum { design: 0, window: 0, outcome: Outcome::NotConverged };
-    let wave = BLOCK * rayon::current_num_threads() * 4;
-    let mut optima = vec![unsolved; wave.min(samples.len()) * points];
-    let mut efforts = vec![Effort::default(); optima.len()];
-    for (w, wave_samples) in samples.chunks(wave).enumerate() {
-        let count = wave_samples.len() * points;
-        let (optima, efforts) = (&mut optima[..count], &mut efforts[..count]);
-        optima
-            .par_chunks_mut(BLOCK * points)
-            .zip(efforts.par_chunks_mut(BLOCK * points))
-            .zip(wave_samples.par_chunks(BLOCK))
-            .for_each(|((optima, efforts), samples)| {
-                let mut solver = NlpSolver::new(vehicle, &views, grid, form, door_law);
-                let places = optima.chunks_mut(points).zip(efforts.chunks_mut(points));
-                for (sample, (optima, efforts)) in samples.iter().zip(places) {
-                    solver.solve(sample, optima, efforts);
-                }
-            });
-        if !consume(w * wave, optima, efforts) {
-            return false;
-        }
-    }
-    true
+    let unsolved = (Optimum::UNSOLVED, Effort::default());
+    let solver = || NlpSolver::new(vehicle, &views, grid, form, door_law);
+    in_blocks(samples, grid.points(), BLOCK, unsolved, solver, NlpSolver::solve, consume)
 }

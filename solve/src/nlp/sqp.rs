@@ -89,7 +89,7 @@ pub(crate) fn solve(
         let mut multipliers_now = step.multipliers;
         if !taken {
             subproblems += 1;
-            if let Some(corrected) = quadratic.solve(&correction(problem, &numbers, &trial, &trial_values, &step.d)) {
+            if let Some(corrected) = quadratic.solve(&correction(problem, &numbers, &trial_values, &step.d)) {
                 let second = add(&x, &corrected.d);
                 let second_values = problem.values(&second);
                 if before - merit(&second, &second_values) >= 1e-4 * foreseen {
@@ -162,10 +162,9 @@ fn numbers(
 }
 
 /// The second-order correction: the same subproblem with the curvature that the trial point has shown.
-fn correction(problem: &Problem<'_>, numbers: &Numbers, trial: &[f64; N], v: &Values, d: &[f64; N]) -> Numbers {
+fn correction(problem: &Problem<'_>, numbers: &Numbers, v: &Values, d: &[f64; N]) -> Numbers {
     let along = |row: &[f64; N]| row.iter().zip(d).map(|(a, d)| a * d).sum::<f64>();
     let vote_along = along(&numbers.vote_gradient);
-    debug_assert!(trial.iter().all(|x| x.is_finite()));
     Numbers {
         balances: std::array::from_fn(|i| along(&numbers.balance_rows[i]) - v.balances_kw[i]),
         vote_rise: problem.window.pmv_max() - v.vote + vote_along,

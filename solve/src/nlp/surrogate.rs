@@ -8,8 +8,8 @@ use num_dual::DualNum;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-use super::vote::Iso7730;
-use cabin::{Vehicle, kelvin};
+use super::iso7730::Iso7730;
+use cabin::{Vehicle, kelvin, unit_interval};
 
 /// Changes whenever fits would come out differently.
 pub const SURROGATE_VERSION: u32 = 1;
@@ -201,7 +201,7 @@ fn fit(vehicle: &Vehicle, clothing_clo: f64, neighbour: Option<&[f64; PARAMETERS
         grid.map(|(air_c, radiant_c)| (air_c, radiant_c, iso.vote(kelvin(air_c), kelvin(radiant_c)))).collect();
 
     let mut random = ChaCha8Rng::seed_from_u64(SEED);
-    let mut uniform = || (random.next_u64() >> 11) as f64 / (1_u64 << 52) as f64 - 1.0;
+    let mut uniform = || 2.0 * unit_interval(random.next_u64()) - 1.0;
     let random_starts = (0..STARTS).map(|_| std::array::from_fn(|_| uniform()));
     let starts: Vec<[f64; PARAMETERS]> = match neighbour {
         Some(parameters) => vec![*parameters],

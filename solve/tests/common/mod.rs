@@ -1,38 +1,15 @@
-//! Designs, windows, disturbances and the reference solver that the tests share.
+//! Windows, disturbances and the reference solver that the tests share.
 
 #[allow(dead_code, reason = "not every test program needs it")]
 pub mod reference;
 
-use cabin::{
-    ComfortWindow, Cop, Design, Disturbances, Heating, PassengerViews, Vehicle, kelvin, named_cooling_cops,
-    named_heating_cops,
-};
+use cabin::{ComfortWindow, Disturbances, Optimum, PassengerViews, Vehicle, kelvin};
 use proptest::prelude::*;
-use solve::{Grid, Operation, Optimum, Outcome, SampleSolver};
-
-pub fn design(name: &str, heating: Heating, radiant_heaters: bool, air_curtain: bool) -> Design {
-    let heating_cop = match heating {
-        Heating::Ptc => Cop::Constant(1.0),
-        Heating::HeatPump => named_heating_cops().swap_remove(0).1,
-    };
-    let cooling_cop = named_cooling_cops().swap_remove(0).1;
-    Design { name: name.to_owned(), heating, heating_cop, cooling_cop, radiant_heaters, air_curtain }
-}
-
-pub fn designs() -> Vec<Design> {
-    vec![
-        design("ptc", Heating::Ptc, false, false),
-        design("ptc+rh", Heating::Ptc, true, false),
-        design("hp", Heating::HeatPump, false, false),
-        design("hp+rh", Heating::HeatPump, true, false),
-        design("hp+curtain", Heating::HeatPump, false, true),
-        design("hp+rh+curtain", Heating::HeatPump, true, true),
-    ]
-}
+use solve::{Grid, SampleSolver};
 
 pub fn windows() -> Vec<ComfortWindow> {
-    let symmetric = (0..=16).map(|i| ComfortWindow::symmetric(0.125 * f64::from(i)).expect("valid"));
-    symmetric.chain([ComfortWindow::new(-0.5, 0.7).expect("valid")]).collect()
+    let unequal = ComfortWindow::new(-0.5, 0.7).expect("valid");
+    testing::paper_windows().into_iter().chain([unequal]).collect()
 }
 
 pub fn disturbances() -> impl Strategy<Value = Disturbances> {
@@ -49,14 +26,7 @@ pub fn disturbances() -> impl Strategy<Value = Disturbances> {
 }
 
 pub fn solve(vehicle: &Vehicle, views: &PassengerViews, grid: &Grid, d: &Disturbances) -> Vec<Optimum> {
-    let mut optima = vec![Optimum { design: 0, window: 0, outcome: Outcome::NotConverged }; grid.points()];
+    let mut optima = vec![Optimum::UNSOLVED; grid.points()];
     SampleSolver::new(vehicle, views, grid).solve(d, &mut optima);
     optima
-}
-
-pub fn operation(optimum: &Optimum) -> Operation {
-    match optimum.outcome {
-        Outcome::Solved(operation, _) => operation,
-        other => panic!("{other:?}"),
-    }
 }

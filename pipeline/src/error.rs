@@ -1,0 +1,73 @@
+//! Why a pipeline ends early.
+
+use ingest::{Finding, IngestError};
+use report::ReportError;
+use shading::ShadowError;
+use std::path::PathBuf;
+use store::StoreError;
+
+use crate::Stale;
+
+/// Why a pipeline ends early.
+#[derive(Debug, thiserror::Error)]
+pub enum PipelineError {
+    /// What was asked for cannot be: a wrong argument.
+    #[error("{0}")]
+    Request(String),
+    /// Missions or weather cannot be used.
+    #[error(transparent)]
+    Ingest(#[from] IngestError),
+    /// The shadow file cannot be read.
+    #[error("{path}: {finding}")]
+    ShadowFile {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        finding: Finding,
+    },
+    /// The shadow file's content cannot be used.
+    #[error("{path}: {source}")]
+    Shadow {
+        /// The file, as the study names it.
+        path: String,
+        /// What is wrong with it.
+        source: ShadowError,
+    },
+    /// No segment gives a sample.
+    #[error("no samples: {excluded} segments are excluded, the first one: {reason}")]
+    NoSamples {
+        /// Segments without a sample.
+        excluded: usize,
+        /// Why the first one has none.
+        reason: String,
+    },
+    /// What a stage builds on was made from something else.
+    #[error(transparent)]
+    Stale(#[from] Stale),
+    /// The database holds nothing to work on.
+    #[error("the database holds no optima yet; run the study first")]
+    NoOptima,
+    /// The database was filled by another study.
+    #[error(
+        "the database holds optima of other designs, windows, constants or methods than the study file asks for; run the study \
+         first"
+    )]
+    OtherStudy,
+    /// The database cannot be used.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    /// The report cannot be made.
+    #[error(transparent)]
+    Report(#[from] ReportError),
+    /// A file cannot be written.
+    #[error("cannot write {path}: {source}; check permissions and free space")]
+    Write {
+        /// The file or folder.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// Somebody asked to stop.
+    #[error("interrupted; everything finished so far is stored: run again to resume")]
+    Interrupted,
+}

@@ -1,0 +1,99 @@
+//! Missions into the database; one whose content is known is not parsed again.
+
+use ingest::mission::{self, MissionReading, MissionSource};
+use ingest::{FileKind, FileRecord, Finding, FindingKind};
+use std::collections::BTreeMap;
+use store::Store;
+use study::{Study, keys};
+
+use crate::in_order::in_order;
+use crate::inputs::{Inputs, refusal_key};
+use crate::{PipelineError, Progress, freshness};
+
+/// Missions that are read at a time, per thread: while one is hashed and taken in, polars parses another.
+const READERS_A_THREAD: usize = 2;
+
+/// What a thread has found out about a mission.
+struct Read {
+    path: String,
+    blake3: String,
+    outcome: Outcome,
+}
+
+enum Outcome {
+    Known,
+    New(Box<MissionReading>, String),
+    Unreadable(Box<FileRecord>),
+}
+
+pub(crate) fn ingest(study: &Study, store: &mut Store, progress: &dyn Progress) -> Result<(), PipelineError> {
+    let found = mission::discover(&study.base, &study.missions_path, &study.buses)?;
+    let overlapping: BTreeMap<usize, FileRecord> = mission::overlaps(&found.missions).into_iter().collect();
+    let known = store.reading_keys(FileKind::Mission)?;
+    let wanted: Vec<&MissionSource> =
+        found.missions.iter().enumerate().filter(|(i, _)| !overlapping.contains_key(i)).map(|(_, m)| m).collect();
+
+    progress.begin("missions", wanted.len() as u64);
+    let read = |buffer: &mut Vec<u8>, source: &&MissionSource| {
+        let path = source.path.clone();
+        let content = match source.load(std::mem::take(buffer)) {
+            Ok(content) => content,
+            Err(record) => return Read { path, blake3: String::new(), outcome: Outcome::Unreadable(Box::new(record)) },
+        };
+        let key = keys::mission_key(study, &content.blake3);
+        let outcome = if known.get(&path) == Some(&key) {
+            Outcome::Known
+        } else {
+            Outcome::New(Box::new(mission::read(source, &content, &study.missions)), key)
+        };
+        let blake3 = content.blake3.clone();
+        *buffer = content.bytes;
+        Read { path, blake3, outcome }
+    };
+    // The first path of every content.
+    let mut contents: BTreeMap<String, String> = BTreeMap::new();
+    let mut read_now = 0;
+    in_order(&wanted, READERS_A_THREAD * rayon::current_num_threads(), read, |Read { path, blake3, outcome }| {
+        if progress.stop() {
+            return Err(PipelineError::Interrupted);
+        }
+        match (outcome, contents.get(&blake3)) {
+            (Outcome::Unreadable(record), _) => {
+                store.put_file(&record, &refusal_key(&record))?;
+                read_now += 1;
+            }
+            (_, Some(first)) => {
+                let message = format!("the same content as {first}, under another name; remove one of them");
+                let finding = Finding::whole(FindingKind::Overlap, message);
+                let record = FileRecord::refused(&path, FileKind::Mission, &blake3, 0, finding);
+                store.put_file(&record, &refusal_key(&record))?;
+            }
+            (outcome, None) => {
+                if let Outcome::New(reading, key) = outcome {
+                    store.put_mission(&reading, &key)?;
+                    read_now += 1;
+                }
+                contents.insert(blake3, path);
+            }
+        }
+        progress.advance(1);
+        Ok(())
+    })?;
+    progress.end();
+    let mut paths: Vec<String> = found.missions.iter().map(|m| m.path.clone()).collect();
+    for record in overlapping.into_values().chain(found.refused) {
+        paths.push(record.path.clone());
+        store.put_file(&record, &refusal_key(&record))?;
+    }
+    let forgotten = store.keep_files(FileKind::Mission, &paths)?;
+    progress.info(&format!("{} missions: {read_now} read now, {forgotten} no longer there", paths.len()));
+    Ok(())
+}
+
+/// Says that samples are to be joined anew, where `ingest` runs alone.
+pub(crate) fn say_stale(inputs: &Inputs, store: &mut Store, progress: &dyn Progress) -> Result<(), PipelineError> {
+    if let Some(stale) = freshness::samples(inputs, store)? {
+        progress.warn(&format!("{}; `busclimate {}` comes next", stale.what, stale.remedy));
+    }
+    Ok(())
+}

@@ -1,0 +1,90 @@
+//! The inputs of a run besides missions, each read once.
+
+use ingest::weather::{self, Weather};
+use ingest::{Content, FileKind, FileRecord, Finding};
+use shading::ShadowYear;
+use std::cell::OnceCell;
+use study::{Study, keys};
+
+use crate::PipelineError;
+
+/// Weather and shade, read when they are first asked for.
+#[derive(Debug)]
+pub struct Inputs<'s> {
+    study: &'s Study,
+    weather: OnceCell<(Weather, Vec<FileRecord>)>,
+    shadow: OnceCell<(ShadowYear, FileRecord)>,
+}
+
+impl<'s> Inputs<'s> {
+    /// The inputs that a study names; nothing is read yet.
+    #[must_use]
+    pub fn new(study: &'s Study) -> Self {
+        Self { study, weather: OnceCell::new(), shadow: OnceCell::new() }
+    }
+
+    /// The weather, with what there is to say of its files.
+    ///
+    /// # Errors
+    /// [`PipelineError::Ingest`].
+    pub fn weather(&self) -> Result<&(Weather, Vec<FileRecord>), PipelineError> {
+        if let Some(weather) = self.weather.get() {
+            return Ok(weather);
+        }
+        let s = self.study;
+        let files = weather::discover(&s.base, &s.weather_path, &s.weather.format)?;
+        let read = weather::read(&files, &s.weather)?;
+        Ok(self.weather.get_or_init(|| read))
+    }
+
+    /// The shadow fractions and the record of their file.
+    ///
+    /// # Errors
+    /// [`PipelineError::ShadowFile`], [`PipelineError::Shadow`].
+    pub fn shadow(&self) -> Result<&(ShadowYear, FileRecord), PipelineError> {
+        if let Some(shadow) = self.shadow.get() {
+            return Ok(shadow);
+        }
+        let read = read_shadow(self.study)?;
+        Ok(self.shadow.get_or_init(|| read))
+    }
+
+    /// The records of all files that samples are joined with, each with its reading key.
+    pub(crate) fn records(&self) -> Result<Vec<(FileRecord, String)>, PipelineError> {
+        let (_, weather) = self.weather()?;
+        let (_, shadow) = self.shadow()?;
+        let keyed = |record: &FileRecord| {
+            let key = match (record.accepted, record.blake3.is_empty()) {
+                (false, true) => refusal_key(record),
+                _ => keys::surroundings_key(self.study, &record.blake3),
+            };
+            (record.clone(), key)
+        };
+        Ok(weather.iter().chain([shadow]).map(keyed).collect())
+    }
+}
+
+/// Key of a file that was never read.
+pub(crate) fn refusal_key(record: &FileRecord) -> String {
+    let reason = record.findings.first().map(Finding::to_string).unwrap_or_default();
+    keys::refusal_key(&record.path, &reason)
+}
+
+fn read_shadow(study: &Study) -> Result<(ShadowYear, FileRecord), PipelineError> {
+    let path = study.base.join(&study.shadow_path);
+    let content = Content::read(&path).map_err(|finding| PipelineError::ShadowFile { path, finding })?;
+    let shadow = ShadowYear::read(content.bytes.as_slice())
+        .map_err(|source| PipelineError::Shadow { path: study.shadow_path.clone(), source })?;
+    let record = FileRecord {
+        path: study.shadow_path.clone(),
+        kind: FileKind::Shadow,
+        bytes: content.bytes.len() as u64,
+        blake3: content.blake3,
+        rows: shadow.hourly().len() as u64,
+        first: None,
+        last: None,
+        accepted: true,
+        findings: Vec::new(),
+    };
+    Ok((shadow, record))
+}

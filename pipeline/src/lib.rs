@@ -1,0 +1,41 @@
+//! From files to a report: missions and weather → samples → optima → simulations → report.
+//!
+//! [`run`] drives the [`Stage`]s over one database and keeps the record of the run. A stage declares what it needs through
+//! [`Inputs`], which reads each input once, and through [`freshness`](crate::Stale): what is stale is an error with its
+//! remedy, never computed with in silence. Whoever calls the pipeline, a program or a service, watches it by [`Progress`].
+
+mod canyon;
+mod check;
+mod error;
+mod files;
+mod freshness;
+mod in_order;
+mod ingest;
+mod inputs;
+mod missions;
+mod optima;
+mod progress;
+mod report;
+mod run;
+mod samples;
+mod show;
+mod simulations;
+mod status;
+mod traces;
+mod verify;
+
+pub use canyon::write_canyon;
+pub use check::{Check, check};
+pub use error::PipelineError;
+pub use files::write_beside;
+pub use freshness::Stale;
+pub use in_order::in_order;
+pub use inputs::Inputs;
+pub use progress::{Progress, Quiet};
+pub use run::{Done, Stage, run};
+pub use show::{Point, Shown, show};
+pub use status::{LastRun, Status, Summary, status};
+pub use verify::{Approximation, Part, Verification, verify};
+
+/// Version of the program, as runs and reports state it.
+pub const PROGRAM_VERSION: &str = env!("CARGO_PKG_VERSION");

@@ -1,0 +1,120 @@
+//! A run: stages in their order over one database, and its record.
+
+use chrono::{SecondsFormat, Utc};
+use store::{RunEnd, Store};
+use study::{Study, keys};
+
+use crate::files::make_folder;
+use crate::{
+    Inputs, PROGRAM_VERSION, PipelineError, Progress, Summary, freshness, ingest, optima, report, samples, simulations,
+};
+
+/// One step of a run; each one builds on what the steps before it have stored.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stage {
+    /// Missions into segments.
+    Ingest,
+    /// Segments, weather, sun and shade into samples.
+    Shade,
+    /// Samples into optima.
+    Solve,
+    /// Optima driven second by second.
+    Simulate,
+    /// Rows into tables and figures.
+    Report,
+}
+
+impl Stage {
+    /// All of them in their order.
+    pub const ALL: [Self; 5] = [Self::Ingest, Self::Shade, Self::Solve, Self::Simulate, Self::Report];
+}
+
+/// What a run has done.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Done {
+    /// What the database holds now.
+    pub summary: Summary,
+    /// What the study found, in a few lines; nothing where no report was made.
+    pub headline: Vec<String>,
+}
+
+/// Runs stages on a study's database, and records the run in it. What is said of refused files goes to `progress` before an
+/// error is returned, since a refusal may be why nothing could be done.
+///
+/// # Errors
+/// [`PipelineError`]; what is stored by then stays, and the next run goes on from there.
+pub fn run(study: &Study, stages: &[Stage], progress: &dyn Progress) -> Result<Done, PipelineError> {
+    let only_report = stages == [Stage::Report];
+    let mut store = if only_report { Store::open_read_only(&study.database)? } else { open(study)? };
+    let study = &as_solved(study, stages, &mut store)?;
+    let inputs = Inputs::new(study);
+    let run_id = if only_report { None } else { Some(store.start_run(&now(), PROGRAM_VERSION, &study.hash)?) };
+    let mut headline = Vec::new();
+    let outcome = stages.iter().try_for_each(|stage| match stage {
+        Stage::Ingest => {
+            ingest::ingest(study, &mut store, progress)?;
+            // Weather that cannot be used is said before anything is computed.
+            inputs.records()?;
+            if stages.contains(&Stage::Shade) { Ok(()) } else { ingest::say_stale(&inputs, &mut store, progress) }
+        }
+        Stage::Shade => samples::join(study, &inputs, &mut store, progress),
+        Stage::Solve => match freshness::samples(&inputs, &mut store)? {
+            Some(stale) => Err(stale.into()),
+            None => optima::solve(study, &mut store, progress),
+        },
+        Stage::Simulate => simulations::simulate(study, &inputs, &mut store, progress),
+        Stage::Report => {
+            if only_report {
+                report::say_stale(study, &inputs, &mut store, progress)?;
+            }
+            report::report(study, &mut store).map(|lines| headline = lines)
+        }
+    });
+    let summary = Summary::of(study, &mut store)?;
+    if let Some(id) = run_id {
+        let end = match &outcome {
+            Ok(()) if summary.is_complete() => RunEnd::Done,
+            Ok(()) => RunEnd::DoneWithLosses,
+            Err(PipelineError::Interrupted) => RunEnd::Interrupted,
+            Err(_) => RunEnd::Failed,
+        };
+        let input_hash = input_hash(&mut store)?;
+        store.end_run(id, &now(), end, Some(&input_hash), summary.counts)?;
+    }
+    store.close()?;
+    summary.refused.iter().for_each(|file| progress.warn(&format!("refused: {file}")));
+    if let Some(failed) = &summary.first_unsimulated {
+        progress.warn(&format!("{} missions are not simulated, the first: {failed}", summary.unsimulated));
+    }
+    outcome?;
+    Ok(Done { summary, headline })
+}
+
+/// The study by the method of the stored optima, where a run finds none anew.
+fn as_solved(study: &Study, stages: &[Stage], store: &mut Store) -> Result<Study, PipelineError> {
+    let method = if stages.contains(&Stage::Solve) { None } else { store.grid()?.designs.first().map(|d| d.method) };
+    Ok(study.clone().solved_by(method.unwrap_or(study.method)))
+}
+
+fn open(study: &Study) -> Result<Store, PipelineError> {
+    if let Some(folder) = study.database.parent().filter(|f| !f.as_os_str().is_empty()) {
+        make_folder(folder)?;
+    }
+    Ok(Store::open(&study.database)?)
+}
+
+/// Now, for the record of runs; content knows no clock.
+pub(crate) fn now() -> String {
+    Utc::now().to_rfc3339_opts(SecondsFormat::Secs, true)
+}
+
+/// BLAKE3 over kind, path, content and use of every input. A file's record is stored together with what was made from it, so
+/// the hash vouches for what the database holds, not for what lies on the disk.
+pub(crate) fn input_hash(store: &mut Store) -> Result<String, PipelineError> {
+    let files = store.files()?;
+    let parts: Vec<&str> = files
+        .iter()
+        .flat_map(|f| [f.kind.name(), &f.path, &f.blake3, if f.accepted { "used" } else { "refused" }])
+        .collect();
+    Ok(keys::hash(&parts))
+}

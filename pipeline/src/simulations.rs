@@ -1,0 +1,240 @@
+//! Every mission second by second, with the operation that the optima prescribe; only what is missing.
+
+use cabin::{Operation, Outcome, PassengerViews};
+use ingest::sample::Sample;
+use rayon::prelude::*;
+use simulate::{Replay, SIMULATION_VERSION};
+use std::collections::BTreeMap;
+use store::{SimulationId, SimulationRow, Store, StoredGrid};
+use study::{Study, keys};
+
+use crate::missions::{MissionInTime, WeatherAndShade, missions, span};
+use crate::{Inputs, PipelineError, Progress, freshness, traces};
+
+/// Missions between two transactions, per thread.
+const MISSIONS_A_THREAD: usize = 4;
+
+/// What the simulations of a study run on.
+pub(crate) struct Bench<'a> {
+    pub study: &'a Study,
+    pub grid: StoredGrid,
+    pub views: PassengerViews,
+    pub surroundings: WeatherAndShade<'a>,
+    pub missions: Vec<Vec<Sample>>,
+}
+
+/// A mission to be simulated, with all that comes out of the database for it.
+struct Job<'a> {
+    samples: &'a [Sample],
+    loads: Vec<cabin::LoadChange>,
+    points: Vec<Point>,
+}
+
+/// A design and window of a mission, with its key, and the optima of the segments or why there are none.
+struct Point {
+    id: SimulationId,
+    key: String,
+    optima: Result<Vec<Operation>, String>,
+}
+
+pub(crate) fn simulate(
+    study: &Study,
+    inputs: &Inputs,
+    store: &mut Store,
+    progress: &dyn Progress,
+) -> Result<(), PipelineError> {
+    if let Some(stale) = freshness::samples(inputs, store)? {
+        return Err(stale.into());
+    }
+    if let Some(stale) = freshness::optima(study, store)? {
+        return Err(stale.into());
+    }
+    let bench = Bench {
+        study,
+        grid: store.grid()?,
+        views: PassengerViews::new(&study.vehicle),
+        surroundings: WeatherAndShade::of(inputs)?,
+        missions: missions(store.samples()?),
+    };
+
+    // What the database should hold, and what it holds that it should not.
+    let wanted = bench.keys();
+    let mut known = store.simulation_keys(&bench.grid)?;
+    adopt(&bench, store, &wanted, &mut known)?;
+    let stale: Vec<SimulationId> =
+        known.iter().filter(|(id, key)| wanted.get(*id) != Some(*key)).map(|(id, _)| id.clone()).collect();
+    store.forget_simulations(&bench.grid, &stale)?;
+    let missing = |id: &SimulationId| wanted.get(id).filter(|key| known.get(id) != Some(*key)).cloned();
+
+    progress.begin("simulated", bench.missions.len() as u64);
+    let mut simulated = 0;
+    for chunk in bench.missions.chunks(MISSIONS_A_THREAD * rayon::current_num_threads()) {
+        if progress.stop() {
+            return Err(PipelineError::Interrupted);
+        }
+        let mut jobs = Vec::new();
+        for samples in chunk {
+            jobs.extend(bench.job(store, samples, &missing)?);
+        }
+        let rows: Vec<Vec<SimulationRow>> = jobs.par_iter().map(|job| bench.run(job)).collect();
+        let rows = rows.concat();
+        simulated += rows.iter().map(|r| r.result.as_ref().map_or(0, Vec::len)).sum::<usize>();
+        if !rows.is_empty() {
+            store.put_simulations(&bench.grid, &rows)?;
+        }
+        progress.advance(chunk.len() as u64);
+    }
+    progress.end();
+    traces::trace(&bench, store, &wanted)?;
+    progress.info(&format!(
+        "{simulated} missions simulated now ({} missions × {} designs × {} windows × {} ways to run the bus); {} no longer \
+         valid",
+        bench.missions.len(),
+        study.grid.designs().len(),
+        study.simulated_windows.len(),
+        Replay::ALL.len(),
+        stale.len()
+    ));
+    Ok(())
+}
+
+impl Bench<'_> {
+    /// The key of every simulation that the study asks for: samples and optima of the mission, weather and shade in time,
+    /// design, window, and how the bus behaves.
+    fn keys(&self) -> BTreeMap<SimulationId, String> {
+        let dynamics = format!("{:?} {SIMULATION_VERSION}", self.study.dynamics);
+        let mut keys = BTreeMap::new();
+        for samples in &self.missions {
+            let sample_keys: Vec<&str> = samples.iter().map(|s| s.key.as_str()).collect();
+            let mission = keys::hash(&[&sample_keys.join(" "), &self.surroundings.key(span(samples)), &dynamics]);
+            for id in self.ids(samples) {
+                let w = self.study.grid.windows()[id.window];
+                let window = format!("{} {}", w.pmv_min(), w.pmv_max());
+                let key = keys::hash(&[&mission, &self.study.design_rows[id.design].design_key, &window]);
+                keys.insert(id, key);
+            }
+        }
+        keys
+    }
+
+    /// What is simulated of a mission, in the order of the study.
+    fn ids(&self, samples: &[Sample]) -> Vec<SimulationId> {
+        let source_path = &samples[0].segment.source_path;
+        let designs = 0..self.study.grid.designs().len();
+        let of_design = |design| {
+            let id = move |&window: &usize| SimulationId { source_path: source_path.clone(), design, window };
+            self.study.simulated_windows.iter().map(id)
+        };
+        designs.flat_map(of_design).collect()
+    }
+
+    /// What is missing of a mission; `None` where nothing is.
+    fn job<'s>(
+        &self,
+        store: &mut Store,
+        samples: &'s [Sample],
+        missing: &dyn Fn(&SimulationId) -> Option<String>,
+    ) -> Result<Option<Job<'s>>, PipelineError> {
+        let open: Vec<(SimulationId, String)> =
+            self.ids(samples).into_iter().filter_map(|id| missing(&id).map(|key| (id, key))).collect();
+        if open.is_empty() {
+            return Ok(None);
+        }
+        let optima = optima(store, &self.grid, samples)?;
+        let point = |(id, key): (SimulationId, String)| {
+            let optima = optima[&(id.design, id.window)].clone();
+            Point { id, key, optima }
+        };
+        let points = open.into_iter().map(point).collect();
+        Ok(Some(Job { samples, loads: store.loads(&samples[0].segment.source_path)?, points }))
+    }
+
+    /// Simulates a mission in all the ways that are wanted.
+    fn run(&self, job: &Job<'_>) -> Vec<SimulationRow> {
+        let in_time = MissionInTime::new(self.study, &self.views, &self.surroundings, job.samples, &job.loads);
+        let first = &job.samples[0];
+        let ambient_k =
+            job.samples.iter().map(|s| s.disturbances.ambient_temperature_k).sum::<f64>() / job.samples.len() as f64;
+        let row = |point: &Point| {
+            let result = match (&in_time, &point.optima) {
+                (Err(reason), _) | (_, Err(reason)) => Err(reason.clone()),
+                (Ok(in_time), Ok(optima)) => {
+                    let segments = in_time.segments(optima, self.study.grid.windows()[point.id.window]);
+                    let mission = in_time.mission(&segments);
+                    let design = &self.study.grid.designs()[point.id.design];
+                    let replay = |r: &Replay| Some((*r, r.run(&mission, design, &self.study.dynamics, |_| ())?));
+                    Ok(Replay::ALL.iter().filter_map(replay).collect())
+                }
+            };
+            SimulationRow {
+                id: point.id.clone(),
+                key: point.key.clone(),
+                mission: first.segment.mission.clone(),
+                month: first.month,
+                ambient_k,
+                result,
+            }
+        };
+        job.points.iter().map(row).collect()
+    }
+}
+
+/// The optima of a mission's segments by design and window, or which segment has none.
+type MissionOptima = BTreeMap<(usize, usize), Result<Vec<Operation>, String>>;
+
+pub(crate) fn optima(store: &mut Store, grid: &StoredGrid, samples: &[Sample]) -> Result<MissionOptima, PipelineError> {
+    // Ids of a mission's samples rise with time; those of other buses lie elsewhere.
+    let rows = store.optima(grid, samples[0].id, samples[samples.len() - 1].id)?;
+    let mut found: BTreeMap<(usize, usize), BTreeMap<i64, Outcome>> = BTreeMap::new();
+    for row in &rows {
+        if let Some(outcome) = row.outcome {
+            found.entry((row.design, row.window)).or_default().insert(row.sample_id, outcome);
+        }
+    }
+    let mut optima = BTreeMap::new();
+    for design in 0..grid.designs.len() {
+        for window in 0..grid.windows.len() {
+            let outcomes = found.remove(&(design, window)).unwrap_or_default();
+            let operation = |s: &Sample| match outcomes.get(&s.id) {
+                Some(Outcome::Solved(operation, _)) => Ok(*operation),
+                Some(other) => Err(format!("segment {} has no optimum: {}", s.segment.segment, other.words())),
+                None => Err(format!("segment {} has no optimum", s.segment.segment)),
+            };
+            optima.insert((design, window), samples.iter().map(operation).collect());
+        }
+    }
+    Ok(optima)
+}
+
+/// Databases of version 0.1.0 keyed a simulation by its samples' values and by all inputs together. Where that says that nothing
+/// has changed, the simulation gets its new key instead of being computed again.
+fn adopt(
+    bench: &Bench<'_>,
+    store: &mut Store,
+    wanted: &BTreeMap<SimulationId, String>,
+    known: &mut BTreeMap<SimulationId, String>,
+) -> Result<(), PipelineError> {
+    if known.iter().all(|(id, key)| wanted.get(id) == Some(key)) {
+        return Ok(());
+    }
+    let study = bench.study;
+    let inputs = crate::run::input_hash(store)?;
+    let dynamics = format!("{:?} {} {SIMULATION_VERSION}", study.dynamics, study.missions.door_open_share);
+    let mut same = Vec::new();
+    for samples in &bench.missions {
+        let values: Vec<String> = samples.iter().map(|s| format!("{} {:?}", s.id, s.disturbances)).collect();
+        let mission = keys::hash(&[&values.join(";"), &inputs, &dynamics]);
+        for id in bench.ids(samples) {
+            let w = study.grid.windows()[id.window];
+            let window = format!("{} {}", w.pmv_min(), w.pmv_max());
+            let old = keys::hash(&[&mission, &study.design_rows[id.design].design_key, &window]);
+            if known.get(&id) == Some(&old)
+                && let Some(key) = wanted.get(&id)
+            {
+                known.insert(id.clone(), key.clone());
+                same.push((id, key.clone()));
+            }
+        }
+    }
+    Ok(store.rekey_simulations(&bench.grid, &same)?)
+}

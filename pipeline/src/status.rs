@@ -1,0 +1,144 @@
+//! What the database holds of a study.
+
+use ingest::FileRecord;
+use serde::Serialize;
+use store::{Counts, RunRow, Store};
+use study::Study;
+
+use crate::PipelineError;
+
+/// What the database holds of a study, in short.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Summary {
+    /// Points by how they ended.
+    pub counts: Counts,
+    /// Refused files with the reason.
+    pub refused: Vec<String>,
+    /// Missions that are not simulated, with a design and window each.
+    pub unsimulated: usize,
+    /// The first of them, with the reason.
+    pub first_unsimulated: Option<String>,
+}
+
+impl Summary {
+    pub(crate) fn of(study: &Study, store: &mut Store) -> Result<Self, PipelineError> {
+        let status = store.status_counts()?;
+        let samples: u64 = store.months()?.iter().map(|m| m.sample_count).sum();
+        let refused = store.files()?.iter().filter(|f| !f.accepted).map(refusal).collect();
+        let counts = Counts {
+            points: samples * study.grid.points() as u64,
+            solved: status.solved,
+            failed: status.infeasible + status.not_converged,
+        };
+        let failures = store.simulation_failures()?;
+        let line = |f: &store::SimulationFailure| {
+            let (low, high) = (f.window.pmv_min(), f.window.pmv_max());
+            format!("{} with {} at PMV {low} … {high}: {}", f.mission, f.design, f.reason)
+        };
+        Ok(Self { counts, refused, unsimulated: failures.len(), first_unsimulated: failures.first().map(line) })
+    }
+
+    /// Whether every point has an optimum, every input is used and every mission simulated.
+    #[must_use]
+    pub fn is_complete(&self) -> bool {
+        self.counts.failed == 0 && self.refused.is_empty() && self.unsimulated == 0
+    }
+}
+
+/// A refused file: path, line, column and reason.
+fn refusal(file: &FileRecord) -> String {
+    let Some(finding) = file.findings.first() else { return file.path.clone() };
+    let line = finding.line.map(|line| format!(", line {line}")).unwrap_or_default();
+    let column = finding.column.as_deref().map(|c| format!(", column {c}")).unwrap_or_default();
+    format!("{}{line}{column}: {}", file.path, finding.message)
+}
+
+/// What the database holds, at length.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Status {
+    /// Name of the study.
+    pub study: String,
+    /// Its database.
+    pub database: String,
+    /// Samples.
+    pub samples: u64,
+    /// Segments without a sample.
+    pub excluded_segments: u64,
+    /// Points of the study: samples × designs × windows.
+    pub points: u64,
+    /// Points with an optimum.
+    pub solved: u64,
+    /// Points without an operation that meets the window.
+    pub infeasible: u64,
+    /// Points that did not settle.
+    pub not_converged: u64,
+    /// Points that are not computed yet.
+    pub pending: u64,
+    /// Simulated missions: mission × design × window.
+    pub simulated_missions: usize,
+    /// Those that cannot be simulated.
+    pub unsimulated_missions: usize,
+    /// Months without samples, 1 … 12.
+    pub missing_months: Vec<u8>,
+    /// Refused files with the reason.
+    pub refused_files: Vec<String>,
+    /// The latest run.
+    pub last_run: Option<LastRun>,
+}
+
+/// A run.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LastRun {
+    /// Number.
+    pub run_id: i64,
+    /// Start, RFC 3339.
+    pub started_utc: String,
+    /// End, once it is over.
+    pub finished_utc: Option<String>,
+    /// How it ended, or `running`.
+    pub status: String,
+    /// Version of the program.
+    pub program_version: String,
+}
+
+impl From<RunRow> for LastRun {
+    fn from(row: RunRow) -> Self {
+        Self {
+            run_id: row.run_id,
+            started_utc: row.started_utc,
+            finished_utc: row.finished_utc,
+            status: row.status,
+            program_version: row.program_version,
+        }
+    }
+}
+
+/// What the database of a study holds.
+///
+/// # Errors
+/// [`PipelineError::Store`] where there is none or it cannot be read.
+pub fn status(study: &Study) -> Result<Status, PipelineError> {
+    let mut store = Store::open_read_only(&study.database)?;
+    let summary = Summary::of(study, &mut store)?;
+    let counts = store.status_counts()?;
+    let months = store.months()?;
+    let grid = store.grid()?;
+    let status = Status {
+        study: study.name.clone(),
+        database: study.database.display().to_string(),
+        samples: months.iter().map(|m| m.sample_count).sum(),
+        excluded_segments: store.exclusion_counts()?.iter().map(|e| e.count).sum(),
+        points: summary.counts.points,
+        solved: counts.solved,
+        infeasible: counts.infeasible,
+        not_converged: counts.not_converged,
+        pending: summary.counts.points.saturating_sub(counts.solved + counts.infeasible + counts.not_converged),
+        simulated_missions: store.simulation_keys(&grid)?.len() - summary.unsimulated,
+        unsimulated_missions: summary.unsimulated,
+        missing_months: (1..=12).filter(|m| !months.iter().any(|row| row.month == *m)).collect(),
+        refused_files: summary.refused,
+        last_run: store.last_run()?.map(LastRun::from),
+    };
+    store.close()?;
+    Ok(status)
+}

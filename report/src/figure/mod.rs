@@ -1,0 +1,10 @@
+//! Figures as SVG: pure functions of what they show.
+
+mod heat_flow;
+mod panels;
+mod pareto;
+
+pub use heat_flow::{HeatFlowFigure, heat_flow_svg};
+pub use panels::{Curve, Panel, PanelFigure, panels_svg};
+pub(crate) use pareto::pareto_svg;
+pub use pareto::{ParetoPoint, simulated_pareto_svg};

@@ -1,0 +1,67 @@
+//! The sections of the report, a file each: title, prose, tables and figures as data. A new one is a file beside these and a
+//! line in [`all`].
+
+mod annual;
+mod assumptions;
+mod designs;
+mod findings;
+mod inputs;
+mod limits;
+mod missions;
+mod monthly;
+mod pareto;
+mod parts;
+mod quality;
+mod reduction;
+mod repeat;
+mod simulation;
+mod simulation_classes;
+mod title;
+
+pub use findings::{PaperFinding, Verdict, paper_findings};
+
+use crate::document::{Block, Section, Span};
+use crate::numbers::month;
+use crate::{ReportError, StudyReport};
+
+/// All sections that a study gives, in the order of the report.
+pub(crate) fn all(study: &StudyReport) -> Result<Vec<Section>, ReportError> {
+    let sections = [
+        Some(title::section(study)),
+        Some(pareto::section(study)),
+        Some(annual::section(study)),
+        reduction::section(study),
+        parts::section(study),
+        limits::section(study),
+        Some(findings::section(study)),
+        monthly::section(study),
+        simulation::section(study),
+        missions::section(study)?,
+        simulation_classes::section(study),
+        Some(designs::section(study)),
+        Some(inputs::section(study)),
+        Some(quality::section(study)),
+        Some(assumptions::section(study)),
+        Some(repeat::section(study)),
+    ];
+    Ok(sections.into_iter().flatten().collect())
+}
+
+/// What weighted means stand for where months are missing.
+fn weights_note(study: &StudyReport) -> Option<Block> {
+    let missing = missing_names(study);
+    let text = vec![
+        Span::Text("Months without samples: "),
+        Span::Value(missing.clone()),
+        Span::Text(". The weights are spread over the other months."),
+    ];
+    (!missing.is_empty()).then_some(Block::Note(text))
+}
+
+fn missing_names(study: &StudyReport) -> String {
+    study.missing_months().iter().map(|m| month(*m)).collect::<Vec<_>>().join(", ")
+}
+
+fn yes(is: bool) -> String {
+    if is { "yes" } else { "no" }.to_owned()
+}

@@ -1,0 +1,138 @@
+//! How far the annual averages of the steady-state method are from those of the simulated missions, and why.
+
+use store::SimulatedYear;
+
+use super::weights_note;
+use crate::StudyReport;
+use crate::document::{Block, DataTable, Section, Span, Table};
+use crate::numbers::{percent, signed, signed_percent, text, watts, window};
+
+pub(super) fn section(study: &StudyReport) -> Option<Section> {
+    let mut tables = Vec::new();
+    if !study.simulation_failures.is_empty() {
+        tables.push(failures(study));
+    }
+    if study.simulated_years.is_empty() && tables.is_empty() {
+        return None;
+    }
+    tables.push(data(study));
+    let section = Section { tables, ..Section::new("Steady state against simulation") };
+    let rows: Vec<Vec<String>> = comparisons(study).iter().map(row).collect();
+    let columns = [
+        "steady state W",
+        "simulated W",
+        "difference",
+        "start-up W",
+        "power limit W",
+        "hourly modes W",
+        "averaging W",
+        "time at the limit",
+    ];
+    let cause = |name: &str, text| vec![Span::Strong(name.to_owned()), Span::Text(text)];
+    Some(
+        section
+            .with(Block::words(
+                "Every mission once more, second by second: the optimum of each segment prescribes operating mode, curtain, heaters and cabin temperature, a PI\n\
+                 controller follows it. The annual means count months by their days. The difference is split by simulating again without one habit after\n\
+                 the other; the four parts add up to it:",
+            ))
+            .with(Block::List(vec![
+                cause("start-up", ": the bus leaves the depot at depot temperature instead of in steady state;"),
+                cause(
+                    "power limit",
+                    ": heat pump, air conditioning and heaters have limits (negative where the cabin stays off its setpoint for it);",
+                ),
+                cause(
+                    "hourly modes",
+                    ": heating, resting or cooling is held for a whole segment instead of following the comfort band;",
+                ),
+                cause("averaging", ": what doors, passengers and weather do within a segment."),
+            ]))
+            .with(Block::Table(Table::new(&["design", "PMV"], &columns, rows)))
+            .with(weights_note(study)),
+    )
+}
+
+/// The annual mean of one design and window: in steady state, simulated as in the paper, and the causes of the difference.
+/// The causes add up to it.
+#[derive(Debug, Clone, PartialEq)]
+struct Comparison<'s> {
+    paper: &'s SimulatedYear,
+    /// What the start at depot temperature costs in W.
+    start_up_w: f64,
+    /// What the power limits cost (negative: what they leave unheated).
+    power_limit_w: f64,
+    /// What holding the operating mode within each segment costs.
+    hourly_modes_w: f64,
+    /// What is left: loads, doors and weather averaged over the segment.
+    averaging_w: f64,
+}
+
+/// All designs and windows that are simulated in all four ways.
+fn comparisons(study: &StudyReport) -> Vec<Comparison<'_>> {
+    let years = &study.simulated_years;
+    let of = |y: &SimulatedYear, controller: &str| {
+        let same = |o: &&SimulatedYear| o.controller == controller && o.design == y.design && o.window == y.window;
+        years.iter().find(same).map(|o| o.mean_hvac_power_w)
+    };
+    let compare = |paper| {
+        let y: &SimulatedYear = paper;
+        let (warm, unlimited, free) = (of(y, "warm-start")?, of(y, "unlimited")?, of(y, "free-mode")?);
+        Some(Comparison {
+            paper,
+            start_up_w: y.mean_hvac_power_w - warm,
+            power_limit_w: warm - unlimited,
+            hourly_modes_w: unlimited - free,
+            averaging_w: free - y.static_mean_hvac_power_w,
+        })
+    };
+    years.iter().filter(|y| y.controller == "paper").filter_map(compare).collect()
+}
+
+fn row(c: &Comparison<'_>) -> Vec<String> {
+    let y = c.paper;
+    let difference_w = y.mean_hvac_power_w - y.static_mean_hvac_power_w;
+    vec![
+        y.design.clone(),
+        window(y.window),
+        watts(Some(y.static_mean_hvac_power_w)),
+        watts(Some(y.mean_hvac_power_w)),
+        signed_percent(difference_w, y.static_mean_hvac_power_w),
+        signed(c.start_up_w, 0),
+        signed(c.power_limit_w, 0),
+        signed(c.hourly_modes_w, 0),
+        signed(c.averaging_w, 0),
+        percent(Some(y.saturated_fraction)),
+    ]
+}
+
+fn data(study: &StudyReport) -> DataTable {
+    DataTable::of(
+        "simulation_annual.csv",
+        &study.simulated_years,
+        &[
+            ("design", &|y| text(&y.design)),
+            ("pmv_min", &|y| y.window.pmv_min().to_string()),
+            ("pmv_max", &|y| y.window.pmv_max().to_string()),
+            ("controller", &|y| y.controller.clone()),
+            ("mean_hvac_power_w", &|y| y.mean_hvac_power_w.to_string()),
+            ("static_mean_hvac_power_w", &|y| y.static_mean_hvac_power_w.to_string()),
+            ("saturated_fraction", &|y| y.saturated_fraction.to_string()),
+            ("mission_count", &|y| y.mission_count.to_string()),
+        ],
+    )
+}
+
+fn failures(study: &StudyReport) -> DataTable {
+    DataTable::of(
+        "simulation_failures.csv",
+        &study.simulation_failures,
+        &[
+            ("mission", &|f| text(&f.mission)),
+            ("design", &|f| text(&f.design)),
+            ("pmv_min", &|f| f.window.pmv_min().to_string()),
+            ("pmv_max", &|f| f.window.pmv_max().to_string()),
+            ("reason", &|f| text(&f.reason)),
+        ],
+    )
+}

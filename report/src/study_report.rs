@@ -1,0 +1,97 @@
+//! Everything that a report says: rows of the database, and what the study rests on.
+
+use cabin::ComfortWindow;
+use chrono_tz::Tz;
+use ingest::FileRecord;
+use store::{
+    AnnualRow, DesignRow, ExclusionCount, LimitShare, MissionTrace, MonthRow, MonthlyRow, SimulatedClass,
+    SimulatedYear, SimulationFailure, StatusCounts, TraceWindow,
+};
+use study::assumptions::Assumption;
+
+/// The limit of the window that single-window tables show, where the study has it.
+pub(crate) const SHOWN_LIMIT: f64 = 1.0;
+
+/// Everything that a report says, in the order of the study.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct StudyReport {
+    /// Name of the study.
+    pub name: String,
+    /// A line of the study's author, shown at the top.
+    pub note: Option<String>,
+    /// Version of the program.
+    pub program_version: String,
+    /// BLAKE3 of the study with all its defaults.
+    pub study_hash: String,
+    /// BLAKE3 of all inputs.
+    pub input_hash: String,
+    /// Time zone of the place.
+    pub zone: Tz,
+    /// Designs.
+    pub designs: Vec<DesignRow>,
+    /// Annual means by design and window.
+    pub annual: Vec<AnnualRow>,
+    /// Monthly means by design, window and month.
+    pub monthly: Vec<MonthlyRow>,
+    /// Months that have samples.
+    pub months: Vec<MonthRow>,
+    /// In how many samples the limits of comfort bind.
+    pub limit_shares: Vec<LimitShare>,
+    /// Points by status.
+    pub status: StatusCounts,
+    /// Input files, with what was noticed in them.
+    pub files: Vec<FileRecord>,
+    /// Segments without a sample by reason.
+    pub exclusions: Vec<ExclusionCount>,
+    /// What the numbers rest on.
+    pub assumptions: Vec<Assumption>,
+    /// Annual means of the simulated missions, by design, window and controller; empty where nothing is simulated.
+    pub simulated_years: Vec<SimulatedYear>,
+    /// The simulated missions by month, temperature and length.
+    pub simulated_classes: Vec<SimulatedClass>,
+    /// Missions that are not simulated.
+    pub simulation_failures: Vec<SimulationFailure>,
+    /// The missions that are shown in time; none where nothing is simulated.
+    pub traces: Vec<MissionTrace>,
+    /// What they come to in each window that is simulated.
+    pub trace_windows: Vec<TraceWindow>,
+}
+
+impl StudyReport {
+    /// Months without samples, 1 … 12.
+    #[must_use]
+    pub fn missing_months(&self) -> Vec<u8> {
+        (1..=12).filter(|month| !self.months.iter().any(|m| m.month == *month)).collect()
+    }
+
+    /// Names of the designs in the order of the study.
+    pub(crate) fn design_names(&self) -> Vec<&str> {
+        self.designs.iter().map(|d| d.name.as_str()).collect()
+    }
+
+    /// The distinct windows in the order of the study.
+    pub(crate) fn windows(&self) -> Vec<ComfortWindow> {
+        let mut windows = Vec::new();
+        for row in &self.annual {
+            if !windows.contains(&row.window) {
+                windows.push(row.window);
+            }
+        }
+        windows
+    }
+
+    /// The window that stands for the study where only one is shown.
+    pub(crate) fn shown_window(&self) -> Option<ComfortWindow> {
+        let windows = self.windows();
+        let shown = windows.iter().find(|w| w.is_symmetric() && w.pmv_limit() == SHOWN_LIMIT);
+        shown.or_else(|| windows.get(windows.len() / 2)).copied()
+    }
+
+    pub(crate) fn annual_power_w(&self, design: &str, window: ComfortWindow) -> Option<f64> {
+        self.annual_row(design, window)?.hvac_power_w
+    }
+
+    pub(crate) fn annual_row(&self, design: &str, window: ComfortWindow) -> Option<&AnnualRow> {
+        self.annual.iter().find(|r| r.design == design && r.window == window)
+    }
+}

@@ -1,0 +1,232 @@
+//! What came of a command, in words on stdout.
+
+use anyhow::anyhow;
+use cabin::celsius;
+use pipeline::{Check, Done, Point, Shown, Stage, Status, Verification, write_beside};
+use solve::Method;
+use std::path::Path;
+use std::time::Duration;
+use study::Study;
+
+use crate::console::say;
+use crate::failure::{Ending, Failure};
+
+pub fn run(study: &Study, stages: &[Stage], done: &Done, elapsed: Duration) -> Result<Ending, Failure> {
+    let summary = &done.summary;
+    say(format_args!(
+        "{}: {} points, {} solved, {} without an optimum; {} files refused; {:.1} s",
+        study.name,
+        summary.counts.points,
+        summary.counts.solved,
+        summary.counts.failed,
+        summary.refused.len(),
+        elapsed.as_secs_f64()
+    ))?;
+    for line in &done.headline {
+        say(format_args!("{line}"))?;
+    }
+    if stages.contains(&Stage::Report) {
+        say(format_args!("report: {}", study.report_dir.join("report.md").display()))?;
+    }
+    Ok(Ending::of(summary.is_complete()))
+}
+
+pub fn check(study: &Study, check: &Check) -> Result<Ending, Failure> {
+    let (designs, windows) = (study.grid.designs().len(), study.grid.windows().len());
+    say(format_args!(
+        "{}: {designs} designs × {windows} comfort windows = {} points a sample",
+        study.name,
+        study.grid.points()
+    ))?;
+    say(format_args!(
+        "{} missions, {} rows, at most {} samples and {} points",
+        check.missions, check.rows, check.samples, check.points
+    ))?;
+    say(format_args!(
+        "simulated: {designs} designs × {} windows × {} ways to run the bus, at most {:.0} million seconds",
+        study.simulated_windows.len(),
+        check.replays,
+        check.simulated_s / 1e6
+    ))?;
+    say(format_args!("about {:.0} s on two cores, {:.0} MB of database", check.seconds, check.database_bytes / 1e6))?;
+    for record in &check.refused {
+        for finding in &record.findings {
+            say(format_args!("refused: {}: {finding}", record.path))?;
+        }
+    }
+    for record in &check.weather {
+        for finding in &record.findings {
+            say(format_args!("note: {}: {finding} ({})", record.path, finding.count))?;
+        }
+    }
+    Ok(Ending::of(check.refused.is_empty()))
+}
+
+pub fn status(status: &Status, json: bool) -> Result<Ending, Failure> {
+    if json {
+        let text = serde_json::to_string(status).map_err(|e| Failure::Inputs(e.into()))?;
+        say(format_args!("{text}"))?;
+        return Ok(Ending::Done);
+    }
+    say(format_args!("{} in {}", status.study, status.database))?;
+    say(format_args!("{} samples, {} segments excluded", status.samples, status.excluded_segments))?;
+    say(format_args!(
+        "{} points: {} solved, {} infeasible, {} not converged, {} pending",
+        status.points, status.solved, status.infeasible, status.not_converged, status.pending
+    ))?;
+    say(format_args!("{} missions simulated (mission × design × window)", status.simulated_missions))?;
+    if status.unsimulated_missions > 0 {
+        let count = status.unsimulated_missions;
+        say(format_args!("{count} missions cannot be simulated; the view simulation_failure says why"))?;
+    }
+    if !status.missing_months.is_empty() {
+        say(format_args!("months without samples: {:?}", status.missing_months))?;
+    }
+    for refused in &status.refused_files {
+        say(format_args!("refused: {refused}"))?;
+    }
+    match &status.last_run {
+        Some(run) => say(format_args!(
+            "last run {}: {}, started {}, busclimate {}",
+            run.run_id, run.status, run.started_utc, run.program_version
+        ))?,
+        None => say(format_args!("no run yet"))?,
+    }
+    Ok(Ending::Done)
+}
+
+pub fn verification(study: &str, verification: &Verification) -> Result<Ending, Failure> {
+    let row = &verification.row;
+    let violations = verification.violations();
+    say(format_args!(
+        "{study}: {} points solved again ({} of the points, seed {}), {violations} violations",
+        row.points, row.fraction, row.seed
+    ))?;
+    say(format_args!(
+        "{:<44} {:>9} {:>10} {:>12} {:<6} {}",
+        "check", "checked", "violations", "largest", "", "tolerance"
+    ))?;
+    for c in &row.checks {
+        say(format_args!(
+            "{:<44} {:>9} {:>10} {:>12.2e} {:<6} {}",
+            c.name, c.checked, c.violations, c.largest, c.unit, c.tolerance
+        ))?;
+    }
+    if let Some(a) = verification.approximation {
+        let what = match verification.method {
+            Method::Fast | Method::Nlp => "the smooth door law",
+            Method::NlpSurrogate => "the smooth door law and the surrogate of the vote",
+        };
+        say(format_args!(
+            "effect of {what} on {} points: mean {:+.3} W, largest {:.3} W",
+            a.points, a.mean_w, a.largest_w
+        ))?;
+    }
+    for c in row.checks.iter().filter(|c| c.violations > 0) {
+        say(format_args!("violated: {}: {}", c.name, c.first_violation.as_deref().unwrap_or("–")))?;
+    }
+    Ok(Ending::of(violations == 0))
+}
+
+pub fn shown(point: &Point, shown: &Shown, figure: Option<&Path>) -> Result<Ending, Failure> {
+    let (sample, segment, d) = (&shown.sample, &shown.sample.segment, &shown.sample.disturbances);
+    say(format_args!(
+        "sample {}  design {}  PMV {} … {}",
+        point.sample,
+        point.design,
+        shown.window.pmv_min(),
+        shown.window.pmv_max()
+    ))?;
+    say(format_args!(
+        "from {} lines {}–{}: mission {}, segment {}, {} for {} s",
+        segment.source_path,
+        segment.first_line,
+        segment.last_line,
+        segment.mission,
+        segment.segment,
+        segment.start.format("%Y-%m-%dT%H:%M:%SZ"),
+        segment.duration_s
+    ))?;
+    say(format_args!("weight in the year {:.4e}, month {}", shown.weight, sample.month))?;
+    say(format_args!(
+        "ambient {:.2} °C, DNI {:.1} W/m², DHI {:.1} W/m², solar altitude {:.2}°, shade {:.3}, passengers {:.2}, doors {:.4}",
+        celsius(d.ambient_temperature_k),
+        d.dni_w_m2,
+        d.dhi_w_m2,
+        d.solar_altitude_rad.to_degrees(),
+        d.shadow_fraction,
+        d.passengers,
+        d.door_open_fraction
+    ))?;
+    let watts = |p: Option<f64>| p.map_or_else(|| "–".to_owned(), |p| format!("{p:.3}"));
+    match &shown.stored {
+        Some(row) => say(format_args!(
+            "stored: {}, {} W, next choice {} W more",
+            row.status,
+            watts(row.hvac_power_w),
+            watts(row.runner_up_excess_w)
+        ))?,
+        None => say(format_args!("stored: nothing yet; `busclimate run` computes it"))?,
+    }
+    candidates(shown)?;
+    if shown.best.is_none() {
+        say(format_args!("\nno operation of this design meets the window"))?;
+        return Ok(Ending::Done);
+    }
+    flows(shown)?;
+    if let Some(path) = figure {
+        let svg = shown.figure(&point.design)?.ok_or_else(|| Failure::Inputs(anyhow!("there is nothing to draw")))?;
+        write_beside(path, svg.as_bytes())?;
+        say(format_args!("\nfigure: {}", path.display()))?;
+    }
+    Ok(Ending::Done)
+}
+
+fn candidates(shown: &Shown) -> Result<(), Failure> {
+    say(format_args!("\nchoices           power W  air unit W  heaters W  curtain W   cabin °C      PMV"))?;
+    for candidate in &shown.candidates {
+        let name = match (candidate.devices.radiant_heaters, candidate.devices.air_curtain) {
+            (false, false) => "neither",
+            (false, true) => "curtain",
+            (true, false) => "heaters",
+            (true, true) => "both",
+        };
+        let Some(o) = candidate.operation else {
+            say(format_args!("{name:<10} no operation meets the window"))?;
+            continue;
+        };
+        let note = if candidate.available { "" } else { "  (not on board)" };
+        say(format_args!(
+            "{name:<12} {:>12.1} {:>11.1} {:>10.1} {:>10.1} {:>10.3} {:>8.4}{note}",
+            o.hvac_power_w(),
+            o.air_unit_power_w,
+            o.radiant_heater_power_w,
+            o.air_curtain_power_w,
+            celsius(o.temperatures.cabin_k),
+            o.pmv
+        ))?;
+    }
+    Ok(())
+}
+
+/// Temperatures and heat flows of the optimum.
+fn flows(shown: &Shown) -> Result<(), Failure> {
+    let Some((operation, flows)) = &shown.best else { return Ok(()) };
+    let t = operation.temperatures;
+    say(format_args!(
+        "\ntemperatures in °C: cabin {:.2}, interior {:.2}, shell inside {:.2}, shell outside {:.2}, radiant heaters {:.2}, \
+         mean radiant {:.2}",
+        celsius(t.cabin_k),
+        celsius(t.interior_k),
+        celsius(t.shell_inside_k),
+        celsius(t.shell_outside_k),
+        celsius(t.radiant_heater_k),
+        celsius(operation.mean_radiant_temperature_k)
+    ))?;
+    say(format_args!("heat flows in W:"))?;
+    for (name, watt) in flows.named_w() {
+        say(format_args!("  {name:<36} {watt:>10.1}"))?;
+    }
+    let residual = flows.net_w().into_iter().map(f64::abs).fold(0.0, f64::max);
+    say(format_args!("largest residual of the five balances: {residual:.1e} W"))
+}

@@ -1,0 +1,160 @@
+//! Missions: their segments, and how their load changes in time.
+
+use cabin::LoadChange;
+use ingest::ExcludedSegment;
+use ingest::mission::{MissionReading, Segment};
+use sqlx::sqlite::{SqliteConnection, SqliteRow};
+use sqlx::{Connection, Row};
+
+use crate::files::replace_file;
+use crate::row::{Insert, count, time, time_text};
+use crate::{Store, StoreError};
+
+/// A stored segment: its mission's reading key, and the segment or why there is none.
+pub type StoredSegment = (String, Result<Segment, ExcludedSegment>);
+
+impl Store {
+    /// Puts a mission into the database: its file, its segments, and what passengers and doors do in time. Replaces the
+    /// mission of the same path, with its samples and whatever came from them.
+    ///
+    /// # Errors
+    /// [`StoreError::Statement`].
+    pub fn put_mission(&mut self, reading: &MissionReading, reading_key: &str) -> Result<(), StoreError> {
+        self.drive(async |c| {
+            let mut tx = c.begin().await?;
+            let id = replace_file(&mut tx, &reading.file, reading_key).await?;
+            // What an earlier reading of the mission led to is void.
+            let mut missions =
+                reading.segments.iter().map(|s| &s.mission).chain(reading.excluded.iter().map(|e| &e.mission));
+            if let Some(mission) = missions.next() {
+                let sql = "DELETE FROM excluded_segment WHERE mission = ?";
+                sqlx::query(sql).bind(mission).execute(&mut *tx).await?;
+            }
+            for segment in &reading.segments {
+                insert_segment(&mut tx, id, segment).await?;
+            }
+            for excluded in &reading.excluded {
+                insert_excluded(&mut tx, id, excluded).await?;
+            }
+            if !reading.loads.is_empty() {
+                let row = Insert::replacing("mission_load").set("source_file_id", id)?;
+                row.set("loads", encode_loads(&reading.loads))?.execute(&mut tx).await?;
+            }
+            Ok(tx.commit().await?)
+        })
+    }
+
+    /// The segments of all accepted mission files, by mission and number.
+    ///
+    /// # Errors
+    /// [`StoreError::Statement`].
+    pub fn segments(&mut self) -> Result<Vec<StoredSegment>, StoreError> {
+        self.drive(async |c| {
+            let sql =
+                "SELECT f.path AS source_path, f.reading_key, g.mission, g.bus, g.segment, g.start_utc, g.duration_s,
+                    g.passengers, g.door_open_fraction, g.first_line, g.last_line, g.excluded
+                FROM mission_segment AS g JOIN source_file AS f USING (source_file_id)
+                WHERE f.outcome = 'accepted' ORDER BY g.mission, g.segment";
+            let rows = sqlx::query(sql).fetch_all(c).await?;
+            rows.iter()
+                .map(|r| {
+                    let excluded: Option<String> = r.try_get("excluded")?;
+                    let content = match excluded {
+                        Some(reason) => Err(ExcludedSegment {
+                            mission: r.try_get("mission")?,
+                            bus: r.try_get("bus")?,
+                            segment: r.try_get("segment")?,
+                            start: time(r, "start_utc")?,
+                            duration_s: r.try_get("duration_s")?,
+                            reason,
+                        }),
+                        None => Ok(segment(r)?),
+                    };
+                    Ok((r.try_get("reading_key")?, content))
+                })
+                .collect()
+        })
+    }
+
+    /// How the load of a mission changes; nothing where nothing is stored.
+    ///
+    /// # Errors
+    /// [`StoreError::Statement`].
+    pub fn loads(&mut self, source_path: &str) -> Result<Vec<LoadChange>, StoreError> {
+        self.drive(async |c| {
+            let sql = "SELECT loads FROM mission_load JOIN source_file USING (source_file_id) WHERE path = ?";
+            let row = sqlx::query(sql).bind(source_path).fetch_optional(c).await?;
+            let bytes: Vec<u8> = row.map(|r| r.try_get("loads")).transpose()?.unwrap_or_default();
+            Ok(bytes.chunks_exact(LOAD_BYTES).map(decode_load).collect())
+        })
+    }
+}
+
+async fn insert_segment(c: &mut SqliteConnection, file: i64, s: &Segment) -> Result<(), StoreError> {
+    Insert::into("mission_segment")
+        .set("source_file_id", file)?
+        .set("segment", s.segment)?
+        .set("mission", s.mission.as_str())?
+        .set("bus", s.bus)?
+        .set("start_utc", time_text(s.start))?
+        .set("duration_s", s.duration_s)?
+        .set("passengers", s.passengers)?
+        .set("door_open_fraction", s.door_open_fraction)?
+        .set("first_line", s.first_line.cast_signed())?
+        .set("last_line", s.last_line.cast_signed())?
+        .execute(c)
+        .await?;
+    Ok(())
+}
+
+async fn insert_excluded(c: &mut SqliteConnection, file: i64, e: &ExcludedSegment) -> Result<(), StoreError> {
+    Insert::into("mission_segment")
+        .set("source_file_id", file)?
+        .set("segment", e.segment)?
+        .set("mission", e.mission.as_str())?
+        .set("bus", e.bus)?
+        .set("start_utc", time_text(e.start))?
+        .set("duration_s", e.duration_s)?
+        .set("excluded", e.reason.as_str())?
+        .execute(c)
+        .await?;
+    Ok(())
+}
+
+pub(crate) fn segment(r: &SqliteRow) -> Result<Segment, sqlx::Error> {
+    Ok(Segment {
+        mission: r.try_get("mission")?,
+        source_path: r.try_get("source_path")?,
+        bus: r.try_get("bus")?,
+        segment: r.try_get("segment")?,
+        start: time(r, "start_utc")?,
+        duration_s: r.try_get("duration_s")?,
+        passengers: r.try_get("passengers")?,
+        door_open_fraction: r.try_get("door_open_fraction")?,
+        first_line: count(r, "first_line")?,
+        last_line: count(r, "last_line")?,
+    })
+}
+
+/// Bytes of a load change.
+const LOAD_BYTES: usize = 13;
+
+fn encode_loads(loads: &[LoadChange]) -> Vec<u8> {
+    let mut bytes = Vec::with_capacity(loads.len() * LOAD_BYTES);
+    for load in loads {
+        bytes.extend(load.second.to_le_bytes());
+        bytes.extend(load.passengers.to_le_bytes());
+        bytes.push(u8::from(load.door_open));
+    }
+    bytes
+}
+
+fn decode_load(bytes: &[u8]) -> LoadChange {
+    let second = std::array::from_fn(|i| bytes[i]);
+    let passengers = std::array::from_fn(|i| bytes[4 + i]);
+    LoadChange {
+        second: u32::from_le_bytes(second),
+        passengers: f64::from_le_bytes(passengers),
+        door_open: bytes[12] != 0,
+    }
+}

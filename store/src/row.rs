@@ -1,0 +1,92 @@
+//! Columns by name: in inserts beside their values, in reads beside their fields.
+
+use cabin::ComfortWindow;
+use chrono::{DateTime, SecondsFormat, Utc};
+use sqlx::sqlite::{SqliteArguments, SqliteConnection, SqliteRow};
+use sqlx::{Arguments, AssertSqlSafe, Encode, Row, Sqlite, Type};
+
+use crate::StoreError;
+
+/// A row on its way into a table.
+pub(crate) struct Insert {
+    verb: &'static str,
+    table: &'static str,
+    columns: Vec<&'static str>,
+    arguments: SqliteArguments,
+}
+
+impl Insert {
+    /// A row that is not there yet.
+    pub fn into(table: &'static str) -> Self {
+        Self { verb: "INSERT", table, columns: Vec::new(), arguments: SqliteArguments::default() }
+    }
+
+    /// A row that takes the place of one with the same key.
+    pub fn replacing(table: &'static str) -> Self {
+        Self { verb: "INSERT OR REPLACE", ..Self::into(table) }
+    }
+
+    /// A column with its value.
+    pub fn set<'q>(
+        mut self,
+        column: &'static str,
+        value: impl Encode<'q, Sqlite> + Type<Sqlite>,
+    ) -> Result<Self, StoreError> {
+        self.columns.push(column);
+        self.arguments.add(value).map_err(sqlx::Error::Encode)?;
+        Ok(self)
+    }
+
+    /// Writes the row; gives its id where the table has one.
+    pub async fn execute(self, c: &mut SqliteConnection) -> Result<i64, StoreError> {
+        let sql = insert_sql(self.verb, self.table, &self.columns, 1);
+        // The text is built from constants alone.
+        Ok(sqlx::query_with(AssertSqlSafe(sql), self.arguments).execute(c).await?.last_insert_rowid())
+    }
+}
+
+/// An INSERT of so many rows.
+pub(crate) fn insert_sql(verb: &str, table: &str, columns: &[&str], rows: usize) -> String {
+    let row = format!("({})", vec!["?"; columns.len()].join(","));
+    format!("{verb} INTO {table} ({}) VALUES {}", columns.join(","), vec![row; rows].join(","))
+}
+
+/// A count, which SQLite keeps as a signed number.
+pub(crate) fn count(row: &SqliteRow, column: &str) -> Result<u64, sqlx::Error> {
+    Ok(row.try_get::<i64, _>(column)?.cast_unsigned())
+}
+
+/// A time as it is kept: RFC 3339 in UTC, to the second.
+pub(crate) fn time_text(time: DateTime<Utc>) -> String {
+    time.to_rfc3339_opts(SecondsFormat::Secs, true)
+}
+
+/// A time.
+pub(crate) fn time(row: &SqliteRow, column: &str) -> Result<DateTime<Utc>, sqlx::Error> {
+    optional_time(row, column)?.ok_or_else(|| invalid(column, "no time"))
+}
+
+/// A time, or none.
+pub(crate) fn optional_time(row: &SqliteRow, column: &str) -> Result<Option<DateTime<Utc>>, sqlx::Error> {
+    let text: Option<String> = row.try_get(column)?;
+    let parse = |text: String| {
+        DateTime::parse_from_rfc3339(&text).map(|t| t.to_utc()).map_err(|e| invalid(column, &format!("{text:?}: {e}")))
+    };
+    text.map(parse).transpose()
+}
+
+/// The comfort window of a row: the columns `pmv_min` and `pmv_max`.
+pub(crate) fn window(row: &SqliteRow) -> Result<ComfortWindow, sqlx::Error> {
+    let (pmv_min, pmv_max) = (row.try_get("pmv_min")?, row.try_get("pmv_max")?);
+    ComfortWindow::new(pmv_min, pmv_max).map_err(|e| invalid("pmv_min", &e.to_string()))
+}
+
+/// What a word of the database stands for.
+pub(crate) fn word<T>(row: &SqliteRow, column: &str, meaning: impl Fn(&str) -> Option<T>) -> Result<T, sqlx::Error> {
+    let text: String = row.try_get(column)?;
+    meaning(&text).ok_or_else(|| invalid(column, &format!("{text:?} has no meaning")))
+}
+
+fn invalid(column: &str, what: &str) -> sqlx::Error {
+    sqlx::Error::ColumnDecode { index: column.to_owned(), source: what.to_owned().into() }
+}

@@ -1,0 +1,107 @@
+//! What the numbers of a report rest on, with sources.
+
+use cabin::{Heating, Vehicle, named_cooling_cops, named_heating_cops};
+use ingest::weather::WeatherFormat;
+
+use crate::Study;
+
+/// Something that the numbers rest on.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Assumption {
+    /// What it is about.
+    pub what: String,
+    /// What is assumed.
+    pub value: String,
+    /// Where it comes from.
+    pub source: String,
+    /// Whether it stands in for something that the paper does not publish.
+    pub substitute: bool,
+}
+
+/// All assumptions of a study, in the order of the report.
+#[must_use]
+pub fn assumptions(study: &Study) -> Vec<Assumption> {
+    let mut list = Vec::new();
+    let mut add = |what: &str, value: String, source: &str, substitute: bool| {
+        let item = Assumption { what: what.to_owned(), value, source: source.to_owned(), substitute };
+        if !list.contains(&item) {
+            list.push(item);
+        }
+    };
+    for design in &study.design_rows {
+        if design.heating == Heating::Ptc {
+            add("COP of PTC heating", design.heating_cop.clone(), "paper, section 2.3", false);
+        } else {
+            let (value, source) = cop(&design.heating_cop, &named_heating_cops());
+            add("COP of heat pump heating", value, source, true);
+        }
+        let (value, source) = cop(&design.cooling_cop, &named_cooling_cops());
+        add("COP of cooling", value, source, true);
+    }
+    let v = &study.vehicle;
+    add(
+        "heat of electric components Q_other",
+        format!("{} W", v.other_heat_w),
+        "label of the paper's heat flow figures",
+        true,
+    );
+    add(
+        "clothing insulation",
+        format!("Havenith's cubic of the ambient temperature, at least {} clo", v.clothing_floor_clo),
+        "Havenith et al. 2012, doi 10.1007/s00484-011-0451-4; floor: the paper's clothing figure",
+        true,
+    );
+    add(
+        "passengers for the mean comfort",
+        format!("{} placed with seed {}", v.passenger_placements, v.passenger_seed),
+        "the paper places passengers at random; number and seed are not published",
+        true,
+    );
+    add(
+        "radiant ceiling panels",
+        format!("{} × {} of {} m × {} m", v.panel_rows, v.panel_columns, v.panel_length_m, v.panel_width_m),
+        "16 panels in the paper; their arrangement is not published",
+        true,
+    );
+    add(
+        "share of the doors that open",
+        study.missions.door_open_share.to_string(),
+        "paper, section on the doors",
+        false,
+    );
+    let split = match &study.weather.format {
+        WeatherFormat::Sia4028 => "direct and diffuse irradiance as in the reference year",
+        WeatherFormat::Csv(map) if map.dhi_column.is_some() && map.dni_column.is_some() => {
+            "direct and diffuse irradiance as in the file"
+        }
+        WeatherFormat::Csv(map) if map.dhi_column.is_some() => "direct irradiance from global and diffuse by closure",
+        _ => "direct and diffuse irradiance from global by Erbs where diffuse is not measured",
+    };
+    add("irradiance", split.to_owned(), "Erbs et al. 1982, doi 10.1016/0038-092X(82)90302-4", false);
+    add(
+        "shadow fractions",
+        study.shadow_path.clone(),
+        "the study's own file; the paper computes them from a city model that is not published",
+        true,
+    );
+    let changed = changed_constants(v);
+    if !changed.is_empty() {
+        add("constants that differ from the paper's bus", changed.join(", "), "the study file", false);
+    }
+    list
+}
+
+fn cop(text: &str, named: &[(&'static str, cabin::Cop, &'static str)]) -> (String, &'static str) {
+    let source = named.iter().find(|n| n.0 == text).map_or("the study file", |n| n.2);
+    (text.to_owned(), source)
+}
+
+fn changed_constants(vehicle: &Vehicle) -> Vec<String> {
+    let fields = |v: &Vehicle| match serde_json::to_value(v) {
+        Ok(serde_json::Value::Object(map)) => map.into_iter().collect::<Vec<_>>(),
+        _ => Vec::new(),
+    };
+    let paper = fields(&Vehicle::default());
+    let differs = |(name, value): &(String, serde_json::Value)| !paper.contains(&(name.clone(), value.clone()));
+    fields(vehicle).into_iter().filter(differs).map(|(name, value)| format!("{name} = {value}")).collect()
+}

@@ -1,0 +1,423 @@
+//! The study file as it was typed: plain data that mirrors the TOML. Nothing is looked up here, no file is touched;
+//! [`crate::Study`] is what becomes of it.
+
+use cabin::Vehicle;
+use ingest::weather::WeatherFormat;
+use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
+use serde::de::{Error as _, MapAccess, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize};
+use simulate::Dynamics;
+use std::fmt;
+use std::marker::PhantomData;
+use std::path::Path;
+
+/// The version of the study file's format that this program reads.
+pub const SCHEMA_VERSION: u32 = 1;
+
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StudyFile {
+    pub schema_version: u32,
+    pub name: String,
+    pub note: Option<String>,
+    // Where results lie does not change them: the study's hash leaves both out.
+    #[serde(default = "default_database", skip_serializing)]
+    pub database: String,
+    #[serde(default = "default_report_dir", skip_serializing)]
+    pub report_dir: String,
+    pub location: Location,
+    pub missions: Missions,
+    pub weather: Weather,
+    pub shadow: Shadow,
+    #[serde(default)]
+    pub comfort: Comfort,
+    #[serde(default)]
+    pub vehicle: Vehicle,
+    #[serde(default)]
+    pub simulation: Simulation,
+    #[serde(default)]
+    pub dynamics: Dynamics,
+    #[serde(default = "default_designs", deserialize_with = "in_file_order")]
+    pub designs: Vec<(String, Design)>,
+}
+
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Location {
+    pub latitude_deg: f64,
+    pub longitude_deg: f64,
+    // Of no effect on the results: the sun's position does not depend on it at this accuracy.
+    pub altitude_m: Option<f64>,
+    #[serde(default = "default_time_zone")]
+    pub time_zone: String,
+}
+
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Missions {
+    pub path: String,
+    #[serde(default)]
+    pub buses: Vec<u32>,
+    #[serde(default = "default_segment_s")]
+    pub segment_s: u32,
+    #[serde(default = "default_door_open_share")]
+    pub door_open_share: f64,
+    #[serde(default)]
+    pub keep_partial: bool,
+}
+
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Weather {
+    #[serde(deserialize_with = "format_name")]
+    pub format: String,
+    pub path: String,
+    pub station: Option<String>,
+    #[serde(default = "default_max_gap_s")]
+    pub max_gap_s: u32,
+    #[serde(default)]
+    pub split: Split,
+    pub time_column: Option<String>,
+    pub time_label: Option<TimeLabel>,
+    pub interval_s: Option<u32>,
+    pub temperature_column: Option<String>,
+    pub ghi_column: Option<String>,
+    pub dhi_column: Option<String>,
+    pub dni_column: Option<String>,
+}
+
+/// Which of the study's windows are simulated.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Simulation {
+    pub pmv_limits: Vec<f64>,
+}
+
+impl Default for Simulation {
+    /// The five levels of the paper's validation.
+    fn default() -> Self {
+        Self { pmv_limits: vec![0.0, 0.5, 1.0, 1.5, 2.0] }
+    }
+}
+
+#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Split {
+    #[default]
+    Erbs,
+}
+
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum TimeLabel {
+    Start,
+    End,
+}
+
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Shadow {
+    pub path: String,
+}
+
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Comfort {
+    pub pmv_limits: Option<Limits>,
+    pub windows: Option<Vec<[f64; 2]>>,
+}
+
+/// `{ from = 0.0, to = 2.0, step = 0.125 }` or `[0.25, 1.0]`.
+#[derive(Debug, Clone, Serialize)]
+#[serde(untagged)]
+pub enum Limits {
+    Steps(Steps),
+    List(Vec<f64>),
+}
+
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Steps {
+    pub from: f64,
+    pub to: f64,
+    pub step: f64,
+}
+
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Design {
+    pub heating: Heating,
+    #[serde(default)]
+    pub radiant_heaters: bool,
+    #[serde(default)]
+    pub air_curtain: bool,
+    pub heating_cop: Option<Cop>,
+    pub cooling_cop: Option<Cop>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Heating {
+    Ptc,
+    Hp,
+}
+
+/// The name of a curve, or a table of `[lift in K, COP]`.
+#[derive(Debug, Clone, Serialize)]
+#[serde(untagged)]
+pub enum Cop {
+    Name(String),
+    Table(Vec<[f64; 2]>),
+}
+
+fn default_database() -> String {
+    "study.db".to_owned()
+}
+
+fn default_report_dir() -> String {
+    "report".to_owned()
+}
+
+fn default_time_zone() -> String {
+    "Europe/Zurich".to_owned()
+}
+
+fn default_segment_s() -> u32 {
+    3600
+}
+
+fn default_door_open_share() -> f64 {
+    0.6
+}
+
+fn default_max_gap_s() -> u32 {
+    10_800
+}
+
+fn default_designs() -> Vec<(String, Design)> {
+    let design = |heating, radiant_heaters, air_curtain| Design {
+        heating,
+        radiant_heaters,
+        air_curtain,
+        heating_cop: None,
+        cooling_cop: None,
+    };
+    [
+        ("ptc", design(Heating::Ptc, false, false)),
+        ("ptc+rh", design(Heating::Ptc, true, false)),
+        ("hp", design(Heating::Hp, false, false)),
+        ("hp+rh", design(Heating::Hp, true, false)),
+        ("hp+curtain", design(Heating::Hp, false, true)),
+    ]
+    .map(|(name, design)| (name.to_owned(), design))
+    .into()
+}
+
+/// The name of a weather format.
+fn format_name<'de, D: Deserializer<'de>>(source: D) -> Result<String, D::Error> {
+    let name = String::deserialize(source)?;
+    if WeatherFormat::NAMES.contains(&name.as_str()) {
+        Ok(name)
+    } else {
+        Err(D::Error::unknown_variant(&name, &WeatherFormat::NAMES))
+    }
+}
+
+/// The tables of a table, in the order of the file.
+fn in_file_order<'de, D: Deserializer<'de>, T: Deserialize<'de>>(source: D) -> Result<Vec<(String, T)>, D::Error> {
+    struct InOrder<T>(PhantomData<T>);
+    impl<'de, T: Deserialize<'de>> Visitor<'de> for InOrder<T> {
+        type Value = Vec<(String, T)>;
+
+        fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+            f.write_str("tables such as [designs.\"hp\"]")
+        }
+
+        fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
+            let mut entries = Vec::new();
+            while let Some(entry) = map.next_entry()? {
+                entries.push(entry);
+            }
+            Ok(entries)
+        }
+    }
+    source.deserialize_map(InOrder(PhantomData))
+}
+
+impl<'de> Deserialize<'de> for Limits {
+    fn deserialize<D: Deserializer<'de>>(source: D) -> Result<Self, D::Error> {
+        struct Either;
+        impl<'de> Visitor<'de> for Either {
+            type Value = Limits;
+
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str("{ from = 0.0, to = 2.0, step = 0.125 } or a list such as [0.25, 1.0]")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Limits, A::Error> {
+                Steps::deserialize(MapAccessDeserializer::new(map)).map(Limits::Steps)
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<Limits, A::Error> {
+                Vec::deserialize(SeqAccessDeserializer::new(list)).map(Limits::List)
+            }
+        }
+        source.deserialize_any(Either)
+    }
+}
+
+impl<'de> Deserialize<'de> for Cop {
+    fn deserialize<D: Deserializer<'de>>(source: D) -> Result<Self, D::Error> {
+        struct Either;
+        impl<'de> Visitor<'de> for Either {
+            type Value = Cop;
+
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str("the name of a COP curve, or a table such as [[0.0, 4.4], [20.0, 2.0]]")
+            }
+
+            fn visit_str<E: serde::de::Error>(self, name: &str) -> Result<Cop, E> {
+                Ok(Cop::Name(name.to_owned()))
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<Cop, A::Error> {
+                Vec::deserialize(SeqAccessDeserializer::new(list))
+                    .map(Cop::Table)
+                    .map_err(|e| A::Error::custom(format!("{e}; a COP table is a list of pairs [lift in K, COP]")))
+            }
+        }
+        source.deserialize_any(Either)
+    }
+}
+
+/// A study file that cannot be used; says file, line, column and what to do.
+#[derive(Debug, thiserror::Error)]
+pub enum StudyFileError {
+    /// The file cannot be read.
+    #[error("cannot read the study file {path}: {source}; `busclimate init DIR` writes one")]
+    Read {
+        /// The file.
+        path: String,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// It is no TOML, or holds keys and values that a study does not have.
+    #[error("{path}:{line}:{column}: {message}")]
+    Syntax {
+        /// The file.
+        path: String,
+        /// Line, from 1.
+        line: usize,
+        /// Column, from 1.
+        column: usize,
+        /// What is wrong, and what to do.
+        message: String,
+    },
+    /// Its values do not make a study.
+    #[error("{path}: {message}")]
+    Content {
+        /// The file.
+        path: String,
+        /// What is wrong, and what to do.
+        message: String,
+    },
+}
+
+impl StudyFile {
+    /// Reads and parses a study file.
+    pub fn read(path: &Path) -> Result<Self, StudyFileError> {
+        let shown = path.display().to_string();
+        let text =
+            std::fs::read_to_string(path).map_err(|source| StudyFileError::Read { path: shown.clone(), source })?;
+        Self::parse(&text, &shown)
+    }
+
+    fn parse(text: &str, path: &str) -> Result<Self, StudyFileError> {
+        let file: Self = toml::from_str(text).map_err(|error| {
+            let at = error.span().map_or(0, |s| s.start).min(text.len());
+            let before = &text[..at];
+            let line = before.matches('\n').count() + 1;
+            let column = before.rsplit('\n').next().map_or(0, |l| l.chars().count()) + 1;
+            StudyFileError::Syntax { path: path.to_owned(), line, column, message: explain(error.message()) }
+        })?;
+        if file.schema_version != SCHEMA_VERSION {
+            let message = format!(
+                "schema_version = {}, but this program reads {SCHEMA_VERSION}; update the file or the program",
+                file.schema_version
+            );
+            return Err(StudyFileError::Content { path: path.to_owned(), message });
+        }
+        Ok(file)
+    }
+}
+
+/// Adds the nearest known name to a message about an unknown one.
+fn explain(message: &str) -> String {
+    let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
+    let unknown = ["unknown field", "unknown variant"].iter().any(|m| message.starts_with(m));
+    let (true, Some((wrong, known))) = (unknown, quoted.split_first()) else {
+        return message.trim().to_owned();
+    };
+    let what = if message.starts_with("unknown field") { "key" } else { "value" };
+    let nearest = known.iter().max_by(|a, b| strsim::jaro_winkler(wrong, a).total_cmp(&strsim::jaro_winkler(wrong, b)));
+    match nearest {
+        Some(nearest) => format!("unknown {what} `{wrong}`; did you mean `{nearest}`? Known are: {}", known.join(", ")),
+        None => format!("unknown {what} `{wrong}`"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SHORT: &str = "schema_version = 1\nname = \"n\"\n[location]\nlatitude_deg = 47.0\nlongitude_deg = 8.0\n\
+        [missions]\npath = \"m\"\n[weather]\nformat = \"sia4028\"\npath = \"w\"\n[shadow]\npath = \"s.csv\"\n";
+
+    fn error(text: &str) -> String {
+        StudyFile::parse(text, "study.toml").unwrap_err().to_string()
+    }
+
+    #[test]
+    fn cli_defaults_are_those_of_the_paper() {
+        let file = StudyFile::parse(SHORT, "study.toml").unwrap();
+        assert_eq!((file.missions.segment_s, file.missions.door_open_share), (3600, 0.6));
+        assert_eq!(file.designs.len(), 5);
+        assert_eq!(file.vehicle, Vehicle::default());
+    }
+
+    #[test]
+    fn cli_a_misspelt_key_is_named_with_line_column_and_the_nearest_one() {
+        let text = SHORT.replace("longitude_deg", "longtude_deg");
+        let message = error(&text);
+        assert!(
+            message.starts_with("study.toml:5:1: unknown key `longtude_deg`; did you mean `longitude_deg`?"),
+            "{message}"
+        );
+        let message = error(&format!("{SHORT}[vehicle]\nroof_area = 3.0\n"));
+        assert!(
+            message.starts_with("study.toml:14:1: unknown key `roof_area`; did you mean `roof_area_m2`?"),
+            "{message}"
+        );
+        let message = error(&format!("{SHORT}[designs.x]\nheating = \"heatpump\"\n"));
+        assert!(message.starts_with("study.toml:14:11: unknown value `heatpump`; did you mean `hp`?"), "{message}");
+    }
+
+    #[test]
+    fn cli_designs_keep_the_order_of_the_file_and_white_space_changes_nothing() {
+        let text = format!("{SHORT}[designs.zebra]\nheating = \"hp\"\n[designs.ant]\nheating = \"ptc\"\n");
+        let file = StudyFile::parse(&text, "study.toml").unwrap();
+        assert_eq!(file.designs.iter().map(|d| d.0.as_str()).collect::<Vec<_>>(), ["zebra", "ant"]);
+        let spaced = StudyFile::parse(&text.replace('=', "   =  ").replace('[', "\n["), "x").unwrap();
+        assert_eq!(serde_json::to_string(&file).unwrap(), serde_json::to_string(&spaced).unwrap());
+    }
+
+    #[test]
+    fn cli_limits_and_tables_say_what_they_expect() {
+        let message = error(&format!("{SHORT}[comfort]\npmv_limits = 3\n"));
+        assert!(message.contains("{ from = 0.0, to = 2.0, step = 0.125 } or a list"), "{message}");
+        let message = error(&format!("{SHORT}[designs.x]\nheating = \"hp\"\nheating_cop = [1.0]\n"));
+        assert!(message.contains("pairs [lift in K, COP]"), "{message}");
+        assert!(error(&SHORT.replace("schema_version = 1", "schema_version = 9")).contains("this program reads 1"));
+        assert!(error("schema_version = 1\nname = \"n\"\n").contains("location"));
+    }
+}

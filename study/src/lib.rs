@@ -1,0 +1,148 @@
+//! The study: `file` is what was typed, [`Study`] what it means, ready to run: defaults filled, names looked up, the grid
+//! expanded, [`keys`] computed.
+//!
+//! Nothing here reads missions or weather, nothing below knows of TOML.
+
+pub mod assumptions;
+mod file;
+pub mod keys;
+mod ready;
+pub mod template;
+
+use cabin::{ComfortWindow, Vehicle};
+use chrono_tz::Tz;
+use ingest::mission::MissionOptions;
+use ingest::weather::{IrradianceSplit, WeatherOptions};
+use shading::Site;
+use simulate::Dynamics;
+use solve::{Grid, Method, certify};
+use std::path::{Path, PathBuf};
+use store::DesignRow;
+
+pub use file::StudyFileError;
+
+use file::StudyFile;
+
+/// A study with everything that its stages need.
+#[derive(Debug, Clone)]
+pub struct Study {
+    /// Name.
+    pub name: String,
+    /// A line of the author, shown at the top of the report.
+    pub note: Option<String>,
+    /// Folder of the study file; all paths of the study are relative to it.
+    pub base: PathBuf,
+    /// Where the experiment database lies.
+    pub database: PathBuf,
+    /// Where the report goes.
+    pub report_dir: PathBuf,
+    /// Place of the bus.
+    pub site: Site,
+    /// Its time zone: months are local.
+    pub zone: Tz,
+    /// Where the missions are: a folder, a glob or an archive.
+    pub missions_path: String,
+    /// Buses that count; none means all.
+    pub buses: Vec<u32>,
+    /// How missions become segments.
+    pub missions: MissionOptions,
+    /// Where the weather is.
+    pub weather_path: String,
+    /// How it is read.
+    pub weather: WeatherOptions,
+    /// Where the shadow fractions are.
+    pub shadow_path: String,
+    /// Constants of the bus.
+    pub vehicle: Vehicle,
+    /// Constants of the simulation.
+    pub dynamics: Dynamics,
+    /// Indices of the windows in the grid that are simulated.
+    pub simulated_windows: Vec<usize>,
+    /// Designs and comfort windows.
+    pub grid: Grid,
+    /// The grid's designs as the database keeps them.
+    pub design_rows: Vec<DesignRow>,
+    /// How optima are found.
+    pub method: Method,
+    /// BLAKE3 of the study with all defaults, without the places of its results.
+    pub hash: String,
+}
+
+impl Study {
+    /// Reads a study file and makes it ready. `database` overrides where the database lies.
+    ///
+    /// # Errors
+    /// [`StudyFileError`] names file, line and column, or what does not fit.
+    pub fn open(path: &Path, database: Option<&Path>) -> Result<Self, StudyFileError> {
+        let file = StudyFile::read(path)?;
+        let base = path.parent().map(Path::to_owned).unwrap_or_default();
+        Self::new(&file, base, database)
+            .map_err(|message| StudyFileError::Content { path: path.display().to_string(), message })
+    }
+
+    fn new(file: &StudyFile, base: PathBuf, database: Option<&Path>) -> Result<Self, String> {
+        let site = Site::new(file.location.latitude_deg, file.location.longitude_deg)
+            .map_err(|e| format!("[location] {e}"))?;
+        let zone: Tz = file.location.time_zone.parse().map_err(|_| {
+            format!(
+                "[location] time_zone = {:?} is not known; take one such as \"Europe/Zurich\"",
+                file.location.time_zone
+            )
+        })?;
+        let missions = ready::mission_options(&file.missions)?;
+        let weather = WeatherOptions {
+            format: ready::weather_format(&file.weather)?,
+            station: file.weather.station.clone(),
+            max_gap_s: file.weather.max_gap_s,
+            split: match file.weather.split {
+                file::Split::Erbs => IrradianceSplit::Erbs,
+            },
+            site,
+        };
+        let (designs, design_rows): (Vec<_>, Vec<_>) =
+            file.designs.iter().map(ready::design).collect::<Result<Vec<_>, _>>()?.into_iter().unzip();
+        let windows = ready::windows(&file.comfort)?;
+        let grid = Grid::new(designs, windows).map_err(|e| e.to_string())?;
+        file.vehicle.check().map_err(|e| format!("[vehicle] {e}"))?;
+        certify(&file.vehicle, grid.designs()).map_err(|e| e.to_string())?;
+
+        file.dynamics.check().map_err(|e| format!("[dynamics] {e}"))?;
+        let simulated = |w: &ComfortWindow| file.simulation.pmv_limits.contains(&w.pmv_limit());
+        let simulated_windows = (0..grid.windows().len()).filter(|&i| simulated(&grid.windows()[i])).collect();
+
+        let study = Self {
+            name: file.name.clone(),
+            note: file.note.clone(),
+            database: database.map_or_else(|| base.join(&file.database), Path::to_owned),
+            report_dir: base.join(&file.report_dir),
+            base,
+            site,
+            zone,
+            missions_path: file.missions.path.clone(),
+            buses: file.missions.buses.clone(),
+            missions,
+            weather_path: file.weather.path.clone(),
+            weather,
+            shadow_path: file.shadow.path.clone(),
+            vehicle: file.vehicle.clone(),
+            dynamics: file.dynamics,
+            simulated_windows,
+            grid,
+            design_rows,
+            hash: keys::study_hash(file),
+            method: Method::Fast,
+        };
+        Ok(study.solved_by(Method::Fast))
+    }
+
+    /// The same study, its optima found by a given method: the keys of the designs tell the methods apart.
+    #[must_use]
+    pub fn solved_by(mut self, method: Method) -> Self {
+        for row in &mut self.design_rows {
+            row.design_key = keys::design_key(row, &self.vehicle, method);
+            row.method = method;
+        }
+        self.method = method;
+        self
+    }
+}

@@ -1,0 +1,146 @@
+//! From what was typed to what is meant: names looked up, ranges checked, lists expanded.
+
+use cabin::{ComfortWindow, Cop, Design, Devices, Heating, named_cooling_cops, named_heating_cops};
+use ingest::mission::MissionOptions;
+use ingest::weather::{ColumnMap, TimeLabel, WeatherFormat};
+use solve::Method;
+use store::DesignRow;
+
+use crate::file;
+use crate::keys::canonical;
+
+/// More limits than this are a slip of the step.
+const MOST_LIMITS: f64 = 1000.0;
+
+pub(crate) fn mission_options(missions: &file::Missions) -> Result<MissionOptions, String> {
+    if !(60..=86_400).contains(&missions.segment_s) {
+        return Err(format!("[missions] segment_s = {} must lie between 60 and 86400", missions.segment_s));
+    }
+    if !(0.0..=1.0).contains(&missions.door_open_share) {
+        return Err(format!("[missions] door_open_share = {} must lie between 0 and 1", missions.door_open_share));
+    }
+    Ok(MissionOptions {
+        segment_s: missions.segment_s,
+        door_open_share: missions.door_open_share,
+        keep_partial: missions.keep_partial,
+    })
+}
+
+pub(crate) fn weather_format(weather: &file::Weather) -> Result<WeatherFormat, String> {
+    let columns = [
+        ("time_column", weather.time_column.is_some()),
+        ("time_label", weather.time_label.is_some()),
+        ("interval_s", weather.interval_s.is_some()),
+        ("temperature_column", weather.temperature_column.is_some()),
+        ("ghi_column", weather.ghi_column.is_some()),
+        ("dhi_column", weather.dhi_column.is_some()),
+        ("dni_column", weather.dni_column.is_some()),
+    ];
+    let known = match WeatherFormat::fixed(&weather.format) {
+        Some(format) => format,
+        None => {
+            let needed = |name: &str| format!("[weather] format = \"csv\" needs {name}");
+            let interval_s = weather.interval_s.ok_or_else(|| needed("interval_s"))?;
+            if !(60..=86_400).contains(&interval_s) {
+                return Err(format!("[weather] interval_s = {interval_s} must lie between 60 and 86400"));
+            }
+            if weather.ghi_column.is_none() && (weather.dhi_column.is_none() || weather.dni_column.is_none()) {
+                return Err(needed("ghi_column, or dhi_column and dni_column"));
+            }
+            return Ok(WeatherFormat::Csv(ColumnMap {
+                time_column: weather.time_column.clone().ok_or_else(|| needed("time_column"))?,
+                time_label: match weather.time_label.ok_or_else(|| needed("time_label = \"start\" or \"end\""))? {
+                    file::TimeLabel::Start => TimeLabel::Start,
+                    file::TimeLabel::End => TimeLabel::End,
+                },
+                interval_s,
+                temperature_column: weather.temperature_column.clone().ok_or_else(|| needed("temperature_column"))?,
+                ghi_column: weather.ghi_column.clone(),
+                dhi_column: weather.dhi_column.clone(),
+                dni_column: weather.dni_column.clone(),
+            }));
+        }
+    };
+    match columns.iter().find(|(_, given)| *given) {
+        Some((name, _)) => Err(format!("[weather] {name} belongs to format = \"csv\" only; remove it")),
+        None => Ok(known),
+    }
+}
+
+pub(crate) fn design((name, typed): &(String, file::Design)) -> Result<(Design, DesignRow), String> {
+    let error = |e: String| format!("[designs.{name:?}] {e}");
+    let heating = match typed.heating {
+        file::Heating::Ptc => Heating::Ptc,
+        file::Heating::Hp => Heating::HeatPump,
+    };
+    let devices = Devices { radiant_heaters: typed.radiant_heaters, air_curtain: typed.air_curtain };
+    let (heating_cop, heating_text) = match (typed.heating, &typed.heating_cop) {
+        (file::Heating::Ptc, None) => (Cop::Constant(1.0), "1".to_owned()),
+        (_, given) => cop("heating_cop", given.as_ref(), named_heating_cops()).map_err(error)?,
+    };
+    let (cooling_cop, cooling_text) =
+        cop("cooling_cop", typed.cooling_cop.as_ref(), named_cooling_cops()).map_err(error)?;
+    let row = DesignRow {
+        name: name.clone(),
+        heating,
+        heating_cop: heating_text,
+        cooling_cop: cooling_text,
+        devices,
+        method: Method::Fast,
+        design_key: String::new(),
+    };
+    let design = Design { name: name.clone(), heating, heating_cop, cooling_cop, devices };
+    Ok((design, row))
+}
+
+/// A curve with its name or table as text; without one, the first of the named.
+fn cop(
+    key: &str,
+    given: Option<&file::Cop>,
+    named: Vec<(&'static str, Cop, &'static str)>,
+) -> Result<(Cop, String), String> {
+    match given {
+        Some(file::Cop::Table(rows)) => {
+            let pairs = rows.iter().map(|[lift, cop]| (*lift, *cop)).collect();
+            let curve = Cop::table(pairs).map_err(|e| format!("{key}: {e}"))?;
+            Ok((curve, canonical(rows)))
+        }
+        Some(file::Cop::Name(name)) => {
+            let known: Vec<&str> = named.iter().map(|n| n.0).collect();
+            let error = || format!("{key} = {name:?} is not known; known are: {}", known.join(", "));
+            let (name, curve, _) = named.iter().find(|n| n.0 == name).ok_or_else(error)?;
+            Ok((curve.clone(), (*name).to_owned()))
+        }
+        None => {
+            let (name, curve, _) = named.into_iter().next().ok_or("there are no named curves")?;
+            Ok((curve, name.to_owned()))
+        }
+    }
+}
+
+/// The windows of the study; without any, the paper's seventeen.
+pub(crate) fn windows(comfort: &file::Comfort) -> Result<Vec<ComfortWindow>, String> {
+    let default = file::Steps { from: 0.0, to: 2.0, step: 0.125 };
+    let limits = match (&comfort.pmv_limits, &comfort.windows) {
+        (Some(file::Limits::List(list)), _) => list.clone(),
+        (Some(file::Limits::Steps(steps)), _) => expand(steps)?,
+        (None, None) => expand(&default)?,
+        (None, Some(_)) => Vec::new(),
+    };
+    let symmetric = limits.iter().map(|&limit| ComfortWindow::symmetric(limit));
+    let unequal = comfort.windows.iter().flatten().map(|&[low, high]| ComfortWindow::new(low, high));
+    symmetric.chain(unequal).collect::<Result<_, _>>().map_err(|e| format!("[comfort] {e}"))
+}
+
+fn expand(steps: &file::Steps) -> Result<Vec<f64>, String> {
+    let file::Steps { from, to, step } = *steps;
+    let count = (to - from) / step;
+    if !(step > 0.0 && (0.0..=MOST_LIMITS).contains(&count)) {
+        return Err(format!(
+            "[comfort] pmv_limits from {from} to {to} by {step}: step must be above 0 and lead from `from` to `to` in at \
+             most {MOST_LIMITS} steps"
+        ));
+    }
+    // A rounding error of the division must not lose the last limit.
+    Ok((0..=(count + 1e-9).floor() as u32).map(|i| from + f64::from(i) * step).collect())
+}

@@ -1,0 +1,133 @@
+//! What each stage says when what it builds on is out of date, and what it needs no more once it is stored.
+
+#![expect(clippy::unwrap_used, reason = "a test ends where something is not as expected")]
+
+mod common;
+
+use common::Scratch;
+
+const WEATHER: &str = "weather/ogd-smn_sma_h_historical_2020-2029.csv";
+
+fn solved() -> Scratch {
+    let scratch = Scratch::demo(6);
+    scratch.edit("study.toml", "{ from = 0.0, to = 2.0, step = 0.125 }", "[0.5, 1.0]");
+    scratch.edit("study.toml", "pmv_limits = [0.0, 0.5, 1.0, 1.5, 2.0]", "pmv_limits = [1.0]");
+    scratch.expect(0, &["run"]);
+    scratch
+}
+
+/// Warms one hour of the weather, in which the first sample lies.
+fn touch_weather(scratch: &Scratch) {
+    let start = &scratch.query("SELECT start_utc FROM sample ORDER BY sample_id LIMIT 1")[0][0];
+    // The stamp is the end of the interval.
+    let hour: u32 = start[11..13].parse().unwrap();
+    let stamp = format!("{}.{}.{} {:02}:00", &start[8..10], &start[5..7], &start[..4], hour + 1);
+    let text = scratch.read(WEATHER);
+    let line = text.lines().find(|l| l.contains(&stamp)).unwrap();
+    let fields: Vec<&str> = line.split(';').collect();
+    let header: Vec<&str> = text.lines().next().unwrap().split(';').collect();
+    let place = header.iter().position(|h| *h == "tre200h0").unwrap();
+    let warmer = (fields[place].parse::<f64>().unwrap() + 3.0).to_string();
+    let changed: Vec<&str> =
+        fields.iter().enumerate().map(|(i, f)| if i == place { warmer.as_str() } else { f }).collect();
+    scratch.edit(WEATHER, line, &changed.join(";"));
+}
+
+#[test]
+fn cli_a_report_needs_no_inputs() {
+    let scratch = solved();
+    let report = scratch.report();
+    std::fs::create_dir(scratch.path("away")).unwrap();
+    for input in ["ztbus", "weather", "shadow.csv"] {
+        std::fs::rename(scratch.path(input), scratch.path("away").join(input)).unwrap();
+    }
+    std::fs::remove_dir_all(scratch.path("report")).unwrap();
+    let run = scratch.expect(0, &["report"]);
+    assert!(!run.stderr.contains("stale"), "{}", run.stderr);
+    assert!(report == scratch.report());
+    for file in ["mission_cold.svg", "mission_hot.svg", "simulated_pareto.svg"] {
+        assert!(report.iter().any(|(name, _)| name == file), "{file} is missing");
+    }
+}
+
+#[test]
+fn cli_a_touched_weather_file_leads_each_stage_alone_to_say_what_is_stale() {
+    let scratch = solved();
+    let (hash, samples) = ("SELECT blake3 FROM source_file WHERE kind = 'weather'", "SELECT * FROM sample");
+    let (recorded, before) = (scratch.query(hash), scratch.query(samples));
+    let report = scratch.report();
+    touch_weather(&scratch);
+    let stale = format!("the samples are stale: {WEATHER} or the settings of its reading have changed");
+    let ingest = scratch.expect(0, &["ingest"]);
+    assert!(
+        ingest.stderr.contains(&stale) && ingest.stderr.contains("`busclimate shade` comes next"),
+        "{}",
+        ingest.stderr
+    );
+    for stage in ["solve", "simulate"] {
+        let run = scratch.expect(3, &[stage]);
+        assert!(run.stderr.contains(&stale) && run.stderr.contains("run `busclimate shade` first"), "{}", run.stderr);
+    }
+    let run = scratch.expect(0, &["report"]);
+    assert!(run.stderr.contains(&stale) && run.stderr.contains("`busclimate run` renews it"), "{}", run.stderr);
+    // Nothing vouches for what was not used.
+    assert_eq!(scratch.query(hash), recorded);
+    assert!(before == scratch.query(samples) && report == scratch.report());
+
+    // The remedies, one after the other: each makes the next stage the stale one.
+    let shade = scratch.expect(0, &["shade"]);
+    assert!(shade.stderr.contains("1 new or changed"), "{}", shade.stderr);
+    assert!(scratch.query(hash) != recorded);
+    let run = scratch.expect(3, &["simulate"]);
+    assert!(
+        run.stderr.contains("the optima are stale: 1 samples have none")
+            && run.stderr.contains("run `busclimate solve` first")
+    );
+    let solve = scratch.expect(0, &["solve"]);
+    assert!(solve.stderr.contains("10 points computed now (1 samples × 10)"), "{}", solve.stderr);
+    let simulate = scratch.expect(0, &["simulate"]);
+    assert!(simulate.stderr.contains("20 missions simulated now"), "{}", simulate.stderr);
+    let fresh = scratch.expect(0, &["report"]);
+    assert!(!fresh.stderr.contains("stale"), "{}", fresh.stderr);
+    assert!(report != scratch.report());
+}
+
+#[test]
+fn cli_weather_that_goes_on_makes_nothing_stale_that_it_does_not_concern() {
+    let scratch = solved();
+    let last = scratch.read(WEATHER).lines().last().unwrap().to_owned();
+    let more = last.replace("01.01.2023 00:00", "01.01.2023 01:00");
+    assert!(more != last, "{last}");
+    let text = scratch.read(WEATHER);
+    scratch.write(WEATHER, format!("{}\n{more}\n", text.trim_end()));
+    let run = scratch.expect(0, &["run"]);
+    assert!(run.stderr.contains("0 new or changed") && run.stderr.contains(" 0 points computed now"), "{}", run.stderr);
+    assert!(run.stderr.contains("INFO 0 missions simulated now"), "{}", run.stderr);
+}
+
+#[test]
+fn cli_a_mission_that_cannot_be_simulated_is_a_row_with_a_reason() {
+    let scratch = Scratch::demo(6);
+    scratch.edit("study.toml", "pmv_limits = [0.0, 0.5, 1.0, 1.5, 2.0]", "pmv_limits = [1.0]");
+    for stage in ["ingest", "shade", "solve"] {
+        scratch.expect(0, &[stage]);
+    }
+    // No window of this bus is out of reach, so a row is made that says so.
+    scratch.tamper(
+        "UPDATE optimum_point SET status = 2 WHERE sample_id = (SELECT min(sample_id) FROM optimum_point)
+            AND design_id = (SELECT design_id FROM hvac_design WHERE name = 'hp')
+            AND window_id = (SELECT window_id FROM comfort_window WHERE pmv_limit = 1.0)",
+    );
+    let run = scratch.expect(1, &["simulate"]);
+    assert!(run.stderr.contains("1 missions are not simulated, the first: B183_"), "{}", run.stderr);
+    let failed = scratch.query("SELECT design, pmv_limit, reason FROM simulation_failure");
+    assert_eq!(failed, [["hp", "1.0", "segment 0 has no optimum: infeasible: too cold"]]);
+    assert_eq!(scratch.query("SELECT count(*) FROM simulation"), [[(4 * (6 * 5 - 1)).to_string()]]);
+    scratch.expect(0, &["status"]);
+    // Known already: it is not tried again, and said again.
+    let again = scratch.expect(1, &["simulate"]);
+    assert!(again.stderr.contains("INFO 0 missions simulated now"), "{}", again.stderr);
+    scratch.expect(1, &["report"]);
+    assert!(scratch.read("report/report.md").contains("- **1 missions are not simulated**"));
+    assert!(scratch.read("report/simulation_failures.csv").contains("segment 0 has no optimum"));
+}
