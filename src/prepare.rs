@@ -1,7 +1,7 @@
 //! What comes before a run: study files and demo data sets.
 
 use anyhow::{Context, anyhow};
-use pipeline::{Progress, write_beside};
+use pipeline::{Progress, write_whole};
 use std::path::{Path, PathBuf};
 
 use crate::STUDY_FILE;
@@ -68,7 +68,7 @@ pub fn demo(args: &DemoArgs, console: &Console) -> Result<(), Failure> {
     let study = template::render(&Template { name: "demo", note: Some(note), buses: &buses, weather: format });
     // Written last: a study file that is there has all its data.
     let path = args.dir.join(STUDY_FILE);
-    write_beside(&path, study.as_bytes())?;
+    write_whole(&path, study.as_bytes())?;
     say(format_args!(
         "{} missions, {} rows, {} MB of synthetic telemetry; study file {}",
         summary.missions,

@@ -2,7 +2,7 @@
 
 use anyhow::anyhow;
 use cabin::celsius;
-use pipeline::{Check, Done, Point, Shown, Stage, Status, Verification, write_beside};
+use pipeline::{Check, Done, Point, Shown, Stage, Status, Verification, write_whole};
 use solve::Method;
 use std::path::Path;
 use std::time::Duration;
@@ -176,7 +176,7 @@ pub fn shown(point: &Point, shown: &Shown, figure: Option<&Path>) -> Result<Endi
     flows(shown)?;
     if let Some(path) = figure {
         let svg = shown.figure(&point.design)?.ok_or_else(|| Failure::Inputs(anyhow!("there is nothing to draw")))?;
-        write_beside(path, svg.as_bytes())?;
+        write_whole(path, svg.as_bytes())?;
         say(format_args!("\nfigure: {}", path.display()))?;
     }
     Ok(Ending::Done)

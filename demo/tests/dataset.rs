@@ -176,7 +176,7 @@ fn prop_streets_are_shadier_in_winter_and_dark_at_night() {
 }
 
 #[test]
-fn cli_bad_meta_data_names_line_and_column() {
+fn prop_bad_meta_data_names_line_and_column() {
     let folder = tempfile::tempdir().unwrap();
     let plans = default_plan(2, 1).unwrap();
     write(folder.path(), 1, &plans, 1);

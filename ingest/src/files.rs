@@ -1,4 +1,4 @@
-//! Finding files and reading their bytes.
+//! Finding files, reading their bytes, and writing them whole.
 
 use std::fs::File;
 use std::io::{BufReader, Read};
@@ -74,6 +74,16 @@ fn limited(source: impl Read, size: u64, mut bytes: Vec<u8>) -> Result<Content, 
 
 fn unreadable(error: &dyn std::error::Error) -> Finding {
     Finding::whole(FindingKind::Unreadable, format!("cannot be read: {error}; check the file and its permissions"))
+}
+
+/// Writes beside the place and renames, so that a file that is there is whole.
+///
+/// # Errors
+/// What the system says.
+pub fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    let mut beside = path.as_os_str().to_owned();
+    beside.push(".part");
+    std::fs::write(&beside, bytes).and_then(|()| std::fs::rename(&beside, path))
 }
 
 /// Opens an archive; its entries are read one by one, nothing is unpacked to disk.

@@ -118,7 +118,7 @@ fn prop_an_archive_gives_what_the_folder_gives() {
 }
 
 #[test]
-fn cli_an_archive_entry_that_climbs_out_is_refused() {
+fn prop_an_archive_entry_that_climbs_out_is_refused() {
     let dir = tempfile::tempdir().unwrap();
     let mut zip = zip::ZipWriter::new(std::fs::File::create(dir.path().join("ZTBus.zip")).unwrap());
     let options = zip::write::SimpleFileOptions::default();
@@ -135,7 +135,7 @@ fn cli_an_archive_entry_that_climbs_out_is_refused() {
 }
 
 #[test]
-fn cli_a_missing_column_names_the_columns_found() {
+fn prop_a_missing_column_names_the_columns_found() {
     let bytes = b"time_unix,itcs_numberOfPassengers,temperature_ambient\n1641794400,1,280\n";
     let reading = read_bytes(bytes, &OPTIONS);
     assert!(!reading.file.accepted);
@@ -145,7 +145,7 @@ fn cli_a_missing_column_names_the_columns_found() {
 }
 
 #[test]
-fn cli_another_delimiter_is_named() {
+fn prop_another_delimiter_is_named() {
     let bytes = String::from_utf8(file(&rows(), "\n")).unwrap().replace(',', ";");
     let reading = read_bytes(bytes.as_bytes(), &OPTIONS);
     assert!(!reading.file.accepted);
@@ -154,7 +154,7 @@ fn cli_another_delimiter_is_named() {
 }
 
 #[test]
-fn cli_another_encoding_is_refused_with_its_line() {
+fn prop_another_encoding_is_refused_with_its_line() {
     let text = String::from_utf8(file(&rows(), "\n")).unwrap();
     let utf16: Vec<u8> = [0xfeff].into_iter().chain(text.encode_utf16()).flat_map(u16::to_le_bytes).collect();
     assert_eq!(finding(&read_bytes(&utf16, &OPTIONS), FindingKind::WrongEncoding).line, Some(1));
@@ -165,7 +165,7 @@ fn cli_another_encoding_is_refused_with_its_line() {
 }
 
 #[test]
-fn cli_empty_files_are_refused() {
+fn prop_empty_files_are_refused() {
     for bytes in [b"".as_slice(), b"\n\n", HEADER.as_bytes(), format!("{HEADER}\r\n").as_bytes()] {
         let reading = read_bytes(bytes, &OPTIONS);
         assert!(!reading.file.accepted);
@@ -174,7 +174,7 @@ fn cli_empty_files_are_refused() {
 }
 
 #[test]
-fn cli_a_truncated_file_keeps_its_whole_segments() {
+fn prop_a_truncated_file_keeps_its_whole_segments() {
     let whole = file(&rows(), "\r\n");
     let at = whole.iter().enumerate().filter(|(_, b)| **b == b'\n').nth(5000).unwrap().0;
     let reading = read_bytes(&whole[..at + 9], &OPTIONS);
@@ -189,7 +189,7 @@ fn cli_a_truncated_file_keeps_its_whole_segments() {
 }
 
 #[test]
-fn cli_time_that_runs_backwards_is_refused_with_its_line() {
+fn prop_time_that_runs_backwards_is_refused_with_its_line() {
     let mut rows = rows();
     rows[4000] = rows[3990].clone();
     rows[4010] = rows[4009].clone();
@@ -204,7 +204,7 @@ fn cli_time_that_runs_backwards_is_refused_with_its_line() {
 }
 
 #[test]
-fn cli_gaps_exclude_a_segment_beyond_one_per_cent() {
+fn prop_gaps_exclude_a_segment_beyond_one_per_cent() {
     for (gap, kept) in [(36, 2), (37, 1)] {
         let mut rows = rows();
         rows.drain(4000..4000 + gap);
@@ -214,7 +214,7 @@ fn cli_gaps_exclude_a_segment_beyond_one_per_cent() {
 }
 
 #[test]
-fn cli_values_that_cannot_be_are_named_with_line_and_text() {
+fn prop_values_that_cannot_be_are_named_with_line_and_text() {
     let mut rows = rows();
     rows[600] = rows[600].replace(",10,", ",ten,");
     rows[700] = rows[700].replace(",NaN,", ",900,");
@@ -249,7 +249,7 @@ fn prop_lines_are_right_behind_blank_lines_and_line_breaks_in_quotes() {
 }
 
 #[test]
-fn cli_rows_outside_the_named_span_refuse_the_file() {
+fn prop_rows_outside_the_named_span_refuse_the_file() {
     let shifted: Vec<String> = rows().iter().map(|r| r.replace(",1641", ",1741")).collect();
     let reading = read_bytes(&file(&shifted, "\n"), &OPTIONS);
     assert!(!reading.file.accepted);
@@ -257,7 +257,7 @@ fn cli_rows_outside_the_named_span_refuse_the_file() {
 }
 
 #[test]
-fn cli_overlapping_missions_of_a_bus_lose_the_later_one() {
+fn prop_overlapping_missions_of_a_bus_lose_the_later_one() {
     let dir = tempfile::tempdir().unwrap();
     for name in [
         "B183_2022-01-10_06-00-00_2022-01-10_08-29-59.csv",
@@ -275,7 +275,7 @@ fn cli_overlapping_missions_of_a_bus_lose_the_later_one() {
 }
 
 #[test]
-fn cli_what_is_no_mission_is_said() {
+fn prop_what_is_no_mission_is_said() {
     let dir = tempfile::tempdir().unwrap();
     let empty = discover(dir.path(), "", &[]).unwrap_err();
     assert!(matches!(empty, IngestError::NoMissions { .. }));

@@ -134,7 +134,7 @@ fn prop_files_of_a_station_are_joined_in_any_order() {
 }
 
 #[test]
-fn cli_stations_and_intervals_must_not_be_mixed() {
+fn prop_stations_and_intervals_must_not_be_mixed() {
     let hourly = |s: &str| ogd(s, "tre200h0;gre000h0;ods000h0", &["01.01.2021 01:00;1;0;"]);
     let minutes = ogd("SMA", "tre200s0;gre000z0;ods000z0", &["01.01.2021 01:00;1;0;"]);
     let dir = write(&[("ogd-smn_sma_h_1.csv", &hourly("SMA")), ("ogd-smn_ber_h_1.csv", &hourly("BER"))]);
@@ -152,7 +152,7 @@ fn cli_stations_and_intervals_must_not_be_mixed() {
 }
 
 #[test]
-fn cli_bad_weather_values_are_recorded_with_line_and_remedy() {
+fn prop_bad_weather_values_are_recorded_with_line_and_remedy() {
     let text = "time,t,g\n2021-06-21T00:00:00Z,10,-3\n2021-06-21T01:00:00Z,10,-50\n2021-06-21T02:00:00Z,75,0\n\
                 2021-06-21T01:00:00Z,10,0\nnoon,10,0\n2021-06-21T03:00:00Z,x,0\n";
     let dir = write(&[("w.csv", text)]);
@@ -172,7 +172,7 @@ fn cli_bad_weather_values_are_recorded_with_line_and_remedy() {
 }
 
 #[test]
-fn cli_unusable_weather_files_say_why() {
+fn prop_unusable_weather_files_say_why() {
     let csv = || WeatherFormat::Csv(map(TimeLabel::Start));
     let kelvin = june(&[]).replace("00,", "00,2");
     for (text, part) in [

@@ -4,7 +4,7 @@ use shading::{Street, canyon_year, even_azimuths_rad, town_streets};
 use std::path::PathBuf;
 use study::Study;
 
-use crate::{PipelineError, write_beside};
+use crate::{PipelineError, write_whole};
 
 /// Writes the shadow file that the study names, for streets of the given directions in degrees from north and heights over
 /// widths; without any, evenly spread directions and the mixture of a town. Returns the file and how many kinds of streets.
@@ -40,6 +40,6 @@ pub fn write_canyon(
         kinds.iter().map(move |&(height_to_width, share)| Street { azimuth_rad, height_to_width, share })
     };
     let streets: Vec<Street> = azimuths.iter().flat_map(street).collect();
-    write_beside(&path, canyon_year(&study.site, &streets).to_csv().as_bytes())?;
+    write_whole(&path, canyon_year(&study.site, &streets).to_csv().as_bytes())?;
     Ok((path, streets.len()))
 }

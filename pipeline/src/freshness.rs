@@ -55,7 +55,8 @@ pub(crate) fn optima(study: &Study, store: &mut Store) -> Result<Option<Stale>, 
         return Ok(stale(what.to_owned()));
     }
     let complete = store.complete_samples(study.grid.points())?.len();
-    match store.samples()?.len().saturating_sub(complete) {
+    let samples: u64 = store.months()?.iter().map(|m| m.sample_count).sum();
+    match samples.saturating_sub(complete as u64) {
         0 => Ok(None),
         open => Ok(stale(format!("the optima are stale: {open} samples have none, or not all"))),
     }

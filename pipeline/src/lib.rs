@@ -4,6 +4,7 @@
 //! [`Inputs`], which reads each input once, and through [`freshness`](crate::Stale): what is stale is an error with its
 //! remedy, never computed with in silence. Whoever calls the pipeline, a program or a service, watches it by [`Progress`].
 
+mod bench;
 mod canyon;
 mod check;
 mod error;
@@ -15,6 +16,7 @@ mod inputs;
 mod missions;
 mod optima;
 mod progress;
+mod record;
 mod report;
 mod run;
 mod samples;
@@ -27,7 +29,7 @@ mod verify;
 pub use canyon::write_canyon;
 pub use check::{Check, check};
 pub use error::PipelineError;
-pub use files::write_beside;
+pub use files::write_whole;
 pub use freshness::Stale;
 pub use in_order::in_order;
 pub use inputs::Inputs;

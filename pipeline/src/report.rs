@@ -5,8 +5,8 @@ use store::Store;
 use study::Study;
 use study::assumptions::assumptions;
 
-use crate::files::{make_folder, write_beside};
-use crate::run::input_hash;
+use crate::files::{make_folder, write_whole};
+use crate::record::input_hash;
 use crate::{Inputs, PROGRAM_VERSION, PipelineError, Progress, freshness};
 
 /// Writes the report and returns what the study found, in a few lines.
@@ -36,7 +36,7 @@ pub(crate) fn report(study: &Study, store: &mut Store) -> Result<Vec<String>, Pi
     let files = report::render(&content)?;
     make_folder(&study.report_dir)?;
     for file in files {
-        write_beside(&study.report_dir.join(file.name), &file.bytes)?;
+        write_whole(&study.report_dir.join(file.name), &file.bytes)?;
     }
     Ok(report::headline(&content))
 }

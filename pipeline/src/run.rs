@@ -1,10 +1,10 @@
 //! A run: stages in their order over one database, and its record.
 
-use chrono::{SecondsFormat, Utc};
 use store::{RunEnd, Store};
-use study::{Study, keys};
+use study::Study;
 
 use crate::files::make_folder;
+use crate::record::{input_hash, now};
 use crate::{
     Inputs, PROGRAM_VERSION, PipelineError, Progress, Summary, freshness, ingest, optima, report, samples, simulations,
 };
@@ -48,7 +48,7 @@ pub fn run(study: &Study, stages: &[Stage], progress: &dyn Progress) -> Result<D
     let mut store = if only_report { Store::open_read_only(&study.database)? } else { open(study)? };
     let study = &as_solved(study, stages, &mut store)?;
     let inputs = Inputs::new(study);
-    let run_id = if only_report { None } else { Some(store.start_run(&now(), PROGRAM_VERSION, &study.hash)?) };
+    let run_id = if only_report { None } else { Some(store.start_run(now(), PROGRAM_VERSION, &study.hash)?) };
     let mut headline = Vec::new();
     let outcome = stages.iter().try_for_each(|stage| match stage {
         Stage::Ingest => {
@@ -79,7 +79,7 @@ pub fn run(study: &Study, stages: &[Stage], progress: &dyn Progress) -> Result<D
             Err(_) => RunEnd::Failed,
         };
         let input_hash = input_hash(&mut store)?;
-        store.end_run(id, &now(), end, Some(&input_hash), summary.counts)?;
+        store.end_run(id, now(), end, Some(&input_hash), summary.counts)?;
     }
     store.close()?;
     summary.refused.iter().for_each(|file| progress.warn(&format!("refused: {file}")));
@@ -101,20 +101,4 @@ fn open(study: &Study) -> Result<Store, PipelineError> {
         make_folder(folder)?;
     }
     Ok(Store::open(&study.database)?)
-}
-
-/// Now, for the record of runs; content knows no clock.
-pub(crate) fn now() -> String {
-    Utc::now().to_rfc3339_opts(SecondsFormat::Secs, true)
-}
-
-/// BLAKE3 over kind, path, content and use of every input. A file's record is stored together with what was made from it, so
-/// the hash vouches for what the database holds, not for what lies on the disk.
-pub(crate) fn input_hash(store: &mut Store) -> Result<String, PipelineError> {
-    let files = store.files()?;
-    let parts: Vec<&str> = files
-        .iter()
-        .flat_map(|f| [f.kind.name(), &f.path, &f.blake3, if f.accepted { "used" } else { "refused" }])
-        .collect();
-    Ok(keys::hash(&parts))
 }

@@ -1,27 +1,20 @@
 //! Every mission second by second, with the operation that the optima prescribe; only what is missing.
 
-use cabin::{Operation, Outcome, PassengerViews};
+use cabin::{Operation, PassengerViews};
 use ingest::sample::Sample;
 use rayon::prelude::*;
 use simulate::{Replay, SIMULATION_VERSION};
 use std::collections::BTreeMap;
-use store::{SimulationId, SimulationRow, Store, StoredGrid};
+use store::{SimulationId, SimulationRow, Store};
 use study::{Study, keys};
 
-use crate::missions::{MissionInTime, WeatherAndShade, missions, span};
+use crate::bench::{Bench, optima};
+use crate::missions::{MissionInTime, WeatherAndShade, missions};
+use crate::record::input_hash;
 use crate::{Inputs, PipelineError, Progress, freshness, traces};
 
 /// Missions between two transactions, per thread.
 const MISSIONS_A_THREAD: usize = 4;
-
-/// What the simulations of a study run on.
-pub(crate) struct Bench<'a> {
-    pub study: &'a Study,
-    pub grid: StoredGrid,
-    pub views: PassengerViews,
-    pub surroundings: WeatherAndShade<'a>,
-    pub missions: Vec<Vec<Sample>>,
-}
 
 /// A mission to be simulated, with all that comes out of the database for it.
 struct Job<'a> {
@@ -99,35 +92,6 @@ pub(crate) fn simulate(
 }
 
 impl Bench<'_> {
-    /// The key of every simulation that the study asks for: samples and optima of the mission, weather and shade in time,
-    /// design, window, and how the bus behaves.
-    fn keys(&self) -> BTreeMap<SimulationId, String> {
-        let dynamics = format!("{:?} {SIMULATION_VERSION}", self.study.dynamics);
-        let mut keys = BTreeMap::new();
-        for samples in &self.missions {
-            let sample_keys: Vec<&str> = samples.iter().map(|s| s.key.as_str()).collect();
-            let mission = keys::hash(&[&sample_keys.join(" "), &self.surroundings.key(span(samples)), &dynamics]);
-            for id in self.ids(samples) {
-                let w = self.study.grid.windows()[id.window];
-                let window = format!("{} {}", w.pmv_min(), w.pmv_max());
-                let key = keys::hash(&[&mission, &self.study.design_rows[id.design].design_key, &window]);
-                keys.insert(id, key);
-            }
-        }
-        keys
-    }
-
-    /// What is simulated of a mission, in the order of the study.
-    fn ids(&self, samples: &[Sample]) -> Vec<SimulationId> {
-        let source_path = &samples[0].segment.source_path;
-        let designs = 0..self.study.grid.designs().len();
-        let of_design = |design| {
-            let id = move |&window: &usize| SimulationId { source_path: source_path.clone(), design, window };
-            self.study.simulated_windows.iter().map(id)
-        };
-        designs.flat_map(of_design).collect()
-    }
-
     /// What is missing of a mission; `None` where nothing is.
     fn job<'s>(
         &self,
@@ -179,33 +143,6 @@ impl Bench<'_> {
     }
 }
 
-/// The optima of a mission's segments by design and window, or which segment has none.
-type MissionOptima = BTreeMap<(usize, usize), Result<Vec<Operation>, String>>;
-
-pub(crate) fn optima(store: &mut Store, grid: &StoredGrid, samples: &[Sample]) -> Result<MissionOptima, PipelineError> {
-    // Ids of a mission's samples rise with time; those of other buses lie elsewhere.
-    let rows = store.optima(grid, samples[0].id, samples[samples.len() - 1].id)?;
-    let mut found: BTreeMap<(usize, usize), BTreeMap<i64, Outcome>> = BTreeMap::new();
-    for row in &rows {
-        if let Some(outcome) = row.outcome {
-            found.entry((row.design, row.window)).or_default().insert(row.sample_id, outcome);
-        }
-    }
-    let mut optima = BTreeMap::new();
-    for design in 0..grid.designs.len() {
-        for window in 0..grid.windows.len() {
-            let outcomes = found.remove(&(design, window)).unwrap_or_default();
-            let operation = |s: &Sample| match outcomes.get(&s.id) {
-                Some(Outcome::Solved(operation, _)) => Ok(*operation),
-                Some(other) => Err(format!("segment {} has no optimum: {}", s.segment.segment, other.words())),
-                None => Err(format!("segment {} has no optimum", s.segment.segment)),
-            };
-            optima.insert((design, window), samples.iter().map(operation).collect());
-        }
-    }
-    Ok(optima)
-}
-
 /// Databases of version 0.1.0 keyed a simulation by its samples' values and by all inputs together. Where that says that nothing
 /// has changed, the simulation gets its new key instead of being computed again.
 fn adopt(
@@ -218,7 +155,7 @@ fn adopt(
         return Ok(());
     }
     let study = bench.study;
-    let inputs = crate::run::input_hash(store)?;
+    let inputs = input_hash(store)?;
     let dynamics = format!("{:?} {} {SIMULATION_VERSION}", study.dynamics, study.missions.door_open_share);
     let mut same = Vec::new();
     for samples in &bench.missions {

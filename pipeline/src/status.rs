@@ -1,5 +1,6 @@
 //! What the database holds of a study.
 
+use chrono::{DateTime, SecondsFormat, Utc};
 use ingest::FileRecord;
 use serde::Serialize;
 use store::{Counts, RunRow, Store};
@@ -103,10 +104,11 @@ pub struct LastRun {
 
 impl From<RunRow> for LastRun {
     fn from(row: RunRow) -> Self {
+        let text = |time: DateTime<Utc>| time.to_rfc3339_opts(SecondsFormat::Secs, true);
         Self {
             run_id: row.run_id,
-            started_utc: row.started_utc,
-            finished_utc: row.finished_utc,
+            started_utc: text(row.started),
+            finished_utc: row.finished.map(text),
             status: row.status,
             program_version: row.program_version,
         }

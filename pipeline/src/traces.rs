@@ -8,8 +8,8 @@ use store::{SimulationId, Store, TraceRow};
 use study::Study;
 
 use crate::PipelineError;
+use crate::bench::{Bench, optima};
 use crate::missions::MissionInTime;
-use crate::simulations::{Bench, optima};
 
 /// The missions that the paper shows.
 const PAPER: [&str; 2] =

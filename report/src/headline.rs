@@ -1,13 +1,9 @@
 //! What a study found, in a few lines.
 
-use std::fmt::Write as _;
-
-use crate::numbers::{percent, watts, window};
+use crate::answer::answer;
+use crate::numbers::{percent, window};
 use crate::section::{Verdict, paper_findings};
-use crate::study_report::{SHOWN_LIMIT, StudyReport};
-
-/// The limit of a stricter window to compare with ±1.
-const STRICTER: f64 = 0.5;
+use crate::study_report::StudyReport;
 
 /// Up to three lines: the cheapest design, what binds, and how the paper's findings compare. None without optima.
 #[must_use]
@@ -34,40 +30,4 @@ pub fn headline(study: &StudyReport) -> Vec<String> {
         count(Verdict::NotCovered)
     ));
     lines
-}
-
-/// The question of the study, answered in two sentences.
-pub(crate) fn answer(study: &StudyReport) -> Option<String> {
-    let shown = study.shown_window()?;
-    let power = |d: &str, w| study.annual_power_w(d, w);
-    let cheapest = study
-        .designs
-        .iter()
-        .filter_map(|d| Some((d.name.as_str(), power(&d.name, shown)?)))
-        .min_by(|a, b| a.1.total_cmp(&b.1))?;
-    let mut text = format!(
-        "Within PMV {}, the design {} is the cheapest: {} W averaged over the year",
-        window(shown),
-        cheapest.0,
-        watts(Some(cheapest.1))
-    );
-    match power("ptc", shown) {
-        Some(reference) if cheapest.0 != "ptc" && reference > 0.0 => {
-            let _ = write!(text, ", {} less than ptc.", percent(Some(1.0 - cheapest.1 / reference)));
-        }
-        _ => text.push('.'),
-    }
-    let stricter = study.windows().into_iter().find(|w| w.is_symmetric() && w.pmv_limit() == STRICTER);
-    if let Some((window_of, stricter)) = stricter
-        .filter(|_| shown.is_symmetric() && shown.pmv_limit() == SHOWN_LIMIT)
-        .and_then(|w| Some((w, power(cheapest.0, w)?)))
-    {
-        let _ = write!(
-            text,
-            " Comfort within PMV {} costs {} W more.",
-            window(window_of),
-            watts(Some(stricter - cheapest.1))
-        );
-    }
-    Some(text)
 }

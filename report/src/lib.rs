@@ -4,6 +4,7 @@
 //! clock, so that the same rows give the same bytes. `section` says what the report says, a file a section, as data;
 //! `render` turns sections into Markdown and CSV; `figure` draws.
 
+mod answer;
 mod document;
 mod figure;
 mod headline;

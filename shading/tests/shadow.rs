@@ -74,7 +74,7 @@ fn prop_a_canyon_has_its_textbook_shadows() {
 }
 
 #[test]
-fn cli_bad_shadow_files_name_line_and_remedy() {
+fn prop_bad_shadow_files_name_line_and_remedy() {
     let good = file();
     let bad = |from: &str, to: &str| ShadowYear::read(good.replacen(from, to, 1).as_bytes()).unwrap_err();
     assert!(matches!(bad("shadow_fraction", "shade"), ShadowError::Column("shadow_fraction")));

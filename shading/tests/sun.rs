@@ -101,6 +101,6 @@ fn xval_solar_positioning_over_sixty_years_around_the_globe() {
 }
 
 #[test]
-fn cli_coordinates_off_the_globe_are_refused() {
+fn prop_coordinates_off_the_globe_are_refused() {
     assert!(Site::new(91.0, 0.0).is_err() && Site::new(0.0, -181.0).is_err() && Site::new(f64::NAN, 0.0).is_err());
 }

@@ -40,12 +40,7 @@ fn constant(
 
 #[test]
 fn prop_with_constant_inputs_the_simulation_settles_on_the_optimum() {
-    let days = [
-        day(-5.0, 0.0, 20.0, 0.15),
-        day(8.0, 100.0, 5.0, 0.1),
-        day(18.0, 200.0, 30.0, 0.2),
-        day(33.0, 800.0, 16.0, 0.14),
-    ];
+    let days = [testing::winter_day(), testing::spring_day(), day(18.0, 200.0, 30.0, 0.2), testing::summer_day()];
     let mut modes = Vec::new();
     for design in paper_designs() {
         for d in &days {

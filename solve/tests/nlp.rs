@@ -2,34 +2,44 @@
 
 mod common;
 
-use cabin::{Optimum, Outcome, PassengerViews, PmvModel, Vehicle, clothing_insulation_clo, kelvin};
+use cabin::{Disturbances, Optimum, Outcome, PassengerViews, PmvModel, Vehicle, clothing_insulation_clo, kelvin};
 use common::{disturbances, solve, windows};
 use proptest::prelude::*;
 use solve::Grid;
 use solve::nlp::{DoorLaw, Effort, KKT_TOLERANCE, NlpSolver, Surrogate, VoteForm};
-use testing::{all_designs, operation};
+use testing::{all_designs, gallery, operation};
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
     #[test]
     fn prop_both_methods_find_the_same_optimum(d in disturbances()) {
-        let vehicle = Vehicle::default();
-        let views = PassengerViews::new(&vehicle);
-        let grid = Grid::new(all_designs(), windows()).expect("valid");
-        let fast = solve(&vehicle, &views, &grid, &d);
-        let mut solver = NlpSolver::new(&vehicle, &views, &grid, &VoteForm::Exact, DoorLaw::Exact);
-        let mut slow = vec![(Optimum::UNSOLVED, Effort::default()); fast.len()];
-        solver.solve(&d, &mut slow);
-        for (a, (b, effort)) in fast.iter().zip(&slow) {
-            same(a, b)?;
-            prop_assert!(effort.kkt_residual <= KKT_TOLERANCE);
-        }
-        for i in (0..fast.len()).step_by(13) {
-            let (outcome, effort) = solver.solve_point(&d, fast[i].design, fast[i].window);
-            same(&fast[i], &Optimum { outcome, ..fast[i] })?;
-            prop_assert!(effort.kkt_residual <= KKT_TOLERANCE);
-        }
+        both_methods_agree(&d)?;
     }
+}
+
+#[test]
+fn prop_both_methods_find_the_same_optimum_in_every_named_case() -> Result<(), TestCaseError> {
+    gallery().iter().try_for_each(|(_, d)| both_methods_agree(d))
+}
+
+fn both_methods_agree(d: &Disturbances) -> Result<(), TestCaseError> {
+    let vehicle = Vehicle::default();
+    let views = PassengerViews::new(&vehicle);
+    let grid = Grid::new(all_designs(), windows()).expect("valid");
+    let fast = solve(&vehicle, &views, &grid, d);
+    let mut solver = NlpSolver::new(&vehicle, &views, &grid, &VoteForm::Exact, DoorLaw::Exact);
+    let mut slow = vec![(Optimum::UNSOLVED, Effort::default()); fast.len()];
+    solver.solve(d, &mut slow);
+    for (a, (b, effort)) in fast.iter().zip(&slow) {
+        same(a, b)?;
+        prop_assert!(effort.kkt_residual <= KKT_TOLERANCE);
+    }
+    for i in (0..fast.len()).step_by(13) {
+        let (outcome, effort) = solver.solve_point(d, fast[i].design, fast[i].window);
+        same(&fast[i], &Optimum { outcome, ..fast[i] })?;
+        prop_assert!(effort.kkt_residual <= KKT_TOLERANCE);
+    }
+    Ok(())
 }
 
 fn same(fast: &Optimum, slow: &Optimum) -> Result<(), TestCaseError> {

@@ -6,7 +6,7 @@ use sqlx::sqlite::{SqliteArguments, SqliteConnection, SqliteRow};
 use sqlx::{Arguments, AssertSqlSafe, Connection, Row};
 use std::collections::BTreeSet;
 
-use crate::row::insert_sql;
+use crate::row::{count, insert_sql};
 use crate::{Store, StoreError, StoredGrid};
 
 /// The columns, in the order in which [`add_row`] gives their values.
@@ -41,9 +41,21 @@ const ROWS: usize = 400;
 const STATUSES: [(i64, Outcome); 3] = [
     (1, Outcome::Infeasible(Infeasible::TooWarm)),
     (2, Outcome::Infeasible(Infeasible::TooCold)),
-    (3, Outcome::NotConverged),
+    (NOT_CONVERGED, Outcome::NotConverged),
 ];
 const SOLVED: i64 = 0;
+const NOT_CONVERGED: i64 = 3;
+
+/// How many points have which status.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct StatusCounts {
+    /// With an optimum.
+    pub solved: u64,
+    /// Without an operation that meets the window.
+    pub infeasible: u64,
+    /// Not settled.
+    pub not_converged: u64,
+}
 
 /// An optimum as it is stored.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -90,6 +102,26 @@ impl Store {
                     })
                 })
                 .collect()
+        })
+    }
+
+    /// How many stored points ended in which way.
+    ///
+    /// # Errors
+    /// [`StoreError::Statement`].
+    pub fn status_counts(&mut self) -> Result<StatusCounts, StoreError> {
+        self.drive(async |c| {
+            let mut counts = StatusCounts::default();
+            let sql = "SELECT status, count(*) AS points FROM optimum_point GROUP BY status";
+            for row in sqlx::query(sql).fetch_all(c).await? {
+                let points = count(&row, "points")?;
+                match row.try_get("status")? {
+                    SOLVED => counts.solved += points,
+                    NOT_CONVERGED => counts.not_converged += points,
+                    _ => counts.infeasible += points,
+                }
+            }
+            Ok(counts)
         })
     }
 

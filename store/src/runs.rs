@@ -1,8 +1,9 @@
 //! The record of runs.
 
+use chrono::{DateTime, Utc};
 use sqlx::Row;
 
-use crate::row::count;
+use crate::row::{count, optional_time, time, time_text};
 use crate::{Store, StoreError};
 
 /// How a run ended.
@@ -34,10 +35,10 @@ pub struct Counts {
 pub struct RunRow {
     /// Number of the run.
     pub run_id: i64,
-    /// Start, RFC 3339.
-    pub started_utc: String,
-    /// End, while the run is over.
-    pub finished_utc: Option<String>,
+    /// Start.
+    pub started: DateTime<Utc>,
+    /// End, once the run is over.
+    pub finished: Option<DateTime<Utc>>,
     /// How it ended, or `running`.
     pub status: String,
     /// Version of the program.
@@ -51,12 +52,12 @@ impl Store {
     ///
     /// # Errors
     /// [`StoreError::Statement`].
-    pub fn start_run(&mut self, started_utc: &str, version: &str, study_hash: &str) -> Result<i64, StoreError> {
+    pub fn start_run(&mut self, started: DateTime<Utc>, version: &str, study_hash: &str) -> Result<i64, StoreError> {
         self.drive(async |c| {
             sqlx::query("UPDATE run SET status = 'interrupted' WHERE status = 'running'").execute(&mut *c).await?;
             let sql = "INSERT INTO run (started_utc, status, program_version, study_hash)
                 VALUES (?, 'running', ?, ?) RETURNING run_id";
-            let row = sqlx::query(sql).bind(started_utc).bind(version).bind(study_hash).fetch_one(c).await?;
+            let row = sqlx::query(sql).bind(time_text(started)).bind(version).bind(study_hash).fetch_one(c).await?;
             Ok(row.try_get(0)?)
         })
     }
@@ -68,7 +69,7 @@ impl Store {
     pub fn end_run(
         &mut self,
         run_id: i64,
-        finished_utc: &str,
+        finished: DateTime<Utc>,
         end: RunEnd,
         input_hash: Option<&str>,
         counts: Counts,
@@ -83,7 +84,7 @@ impl Store {
             let sql = "UPDATE run SET finished_utc = ?, status = ?, input_hash = ?, point_count = ?, solved_count = ?,
                 failed_count = ? WHERE run_id = ?";
             sqlx::query(sql)
-                .bind(finished_utc)
+                .bind(time_text(finished))
                 .bind(status)
                 .bind(input_hash)
                 .bind(counts.points.cast_signed())
@@ -116,8 +117,8 @@ impl Store {
             };
             Ok(Some(RunRow {
                 run_id: r.try_get("run_id")?,
-                started_utc: r.try_get("started_utc")?,
-                finished_utc: r.try_get("finished_utc")?,
+                started: time(&r, "started_utc")?,
+                finished: optional_time(&r, "finished_utc")?,
                 status: r.try_get("status")?,
                 program_version: r.try_get("program_version")?,
                 counts,

@@ -1,15 +1,16 @@
 //! The record of verifications.
 
+use chrono::{DateTime, Utc};
 use sqlx::Connection;
 
-use crate::row::Insert;
+use crate::row::{Insert, time_text};
 use crate::{Store, StoreError};
 
 /// A verification of stored points.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VerificationRow {
-    /// End, RFC 3339.
-    pub finished_utc: String,
+    /// End.
+    pub finished: DateTime<Utc>,
     /// Version of the program.
     pub program_version: String,
     /// Hash of the study.
@@ -53,7 +54,7 @@ impl Store {
         self.drive(async |c| {
             let mut tx = c.begin().await?;
             let id = Insert::into("verification")
-                .set("finished_utc", verification.finished_utc.as_str())?
+                .set("finished_utc", time_text(verification.finished))?
                 .set("program_version", verification.program_version.as_str())?
                 .set("study_hash", verification.study_hash.as_str())?
                 .set("fraction", verification.fraction)?

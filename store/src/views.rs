@@ -81,17 +81,6 @@ pub struct LimitShare {
     pub outside_range_count: u64,
 }
 
-/// How many points have which status.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct StatusCounts {
-    /// With an optimum.
-    pub solved: u64,
-    /// Without an operation that meets the window.
-    pub infeasible: u64,
-    /// Not settled.
-    pub not_converged: u64,
-}
-
 /// How many segments gave no sample for one reason.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ExclusionCount {
@@ -192,23 +181,6 @@ impl Store {
                 outside_range_count: count(r, "outside_range_count")?,
             })
         })
-    }
-
-    /// How many stored points have which status.
-    ///
-    /// # Errors
-    /// [`StoreError::Statement`].
-    pub fn status_counts(&mut self) -> Result<StatusCounts, StoreError> {
-        let sql = "SELECT coalesce(sum(status = 0), 0) AS solved, coalesce(sum(status IN (1, 2)), 0) AS infeasible,
-            coalesce(sum(status = 3), 0) AS not_converged FROM optimum_point";
-        let rows = self.select(sql, |r| {
-            Ok(StatusCounts {
-                solved: count(r, "solved")?,
-                infeasible: count(r, "infeasible")?,
-                not_converged: count(r, "not_converged")?,
-            })
-        })?;
-        Ok(rows.first().copied().unwrap_or_default())
     }
 
     /// Segments without a sample, counted by reason.

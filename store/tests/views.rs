@@ -203,8 +203,11 @@ fn prop_the_views_speak_celsius_degrees_and_words() {
     let sql = "SELECT status, hvac_power_w, operating_mode, cabin_temperature_c, pmv, runner_up_excess_w FROM optimum
         WHERE design = 'hp' ORDER BY sample_id";
     let rows = store.query_text(sql).unwrap();
-    assert_eq!(rows[0], ["solved", "500.0", "1", "17.0", "-1.0", "5.0"]);
-    assert_eq!(rows[2], ["infeasible: too warm", "", "", "", "", ""]);
+    assert_eq!(
+        rows[0],
+        [solved(1, OperatingMode::Heating, 500.0).outcome.words(), "500.0", "1", "17.0", "-1.0", "5.0"]
+    );
+    assert_eq!(rows[2], [Outcome::Infeasible(Infeasible::TooWarm).words(), "", "", "", "", ""]);
     assert_eq!(rows[3][2], "-1");
     let sql = "SELECT ambient_temperature_c, solar_altitude_deg FROM sample WHERE sample_id = 2";
     let numbers: Vec<f64> = store.query_text(sql).unwrap()[0].iter().map(|c| c.parse().unwrap()).collect();
@@ -314,17 +317,18 @@ fn paper_the_weight_of_a_sample_is_the_days_of_its_month_over_365_and_samples() 
 #[test]
 fn prop_runs_are_recorded_and_a_broken_one_is_marked() {
     let (folder, mut store) = scratch();
-    store.start_run("2022-01-01T00:00:00Z", "0.1.0", "h").unwrap();
-    let id = store.start_run("2022-01-02T00:00:00Z", "0.1.0", "h").unwrap();
+    store.start_run(start(), "0.1.0", "h").unwrap();
+    let id = store.start_run(start() + TimeDelta::days(1), "0.1.0", "h").unwrap();
     let counts = Counts { points: 8, solved: 7, failed: 1 };
-    store.end_run(id, "2022-01-02T00:00:09Z", RunEnd::DoneWithLosses, Some("i"), counts).unwrap();
+    store.end_run(id, start() + TimeDelta::days(2), RunEnd::DoneWithLosses, Some("i"), counts).unwrap();
     let last = store.last_run().unwrap().unwrap();
     assert_eq!((last.status.as_str(), last.counts), ("done with losses", Some(counts)));
+    assert_eq!((last.started, last.finished), (start() + TimeDelta::days(1), Some(start() + TimeDelta::days(2))));
     let all = store.query_text("SELECT status FROM run ORDER BY run_id").unwrap();
     assert_eq!(all, [["interrupted"], ["done with losses"]]);
     store.close().unwrap();
     let mut reader = Store::open_read_only(&folder.path().join("study.db")).unwrap();
     assert!(reader.last_run().unwrap().is_some());
-    assert!(reader.start_run("", "", "").is_err(), "a reader writes");
+    assert!(reader.start_run(start(), "", "").is_err(), "a reader writes");
     assert!(matches!(Store::open_read_only(&folder.path().join("other.db")), Err(StoreError::Missing(_))));
 }

@@ -378,7 +378,7 @@ mod tests {
     }
 
     #[test]
-    fn cli_defaults_are_those_of_the_paper() {
+    fn prop_defaults_are_those_of_the_paper() {
         let file = StudyFile::parse(SHORT, "study.toml").unwrap();
         assert_eq!((file.missions.segment_s, file.missions.door_open_share), (3600, 0.6));
         assert_eq!(file.designs.len(), 5);
@@ -386,7 +386,7 @@ mod tests {
     }
 
     #[test]
-    fn cli_a_misspelt_key_is_named_with_line_column_and_the_nearest_one() {
+    fn prop_a_misspelt_key_is_named_with_line_column_and_the_nearest_one() {
         let text = SHORT.replace("longitude_deg", "longtude_deg");
         let message = error(&text);
         assert!(
@@ -403,7 +403,7 @@ mod tests {
     }
 
     #[test]
-    fn cli_designs_keep_the_order_of_the_file_and_white_space_changes_nothing() {
+    fn prop_designs_keep_the_order_of_the_file_and_white_space_changes_nothing() {
         let text = format!("{SHORT}[designs.zebra]\nheating = \"hp\"\n[designs.ant]\nheating = \"ptc\"\n");
         let file = StudyFile::parse(&text, "study.toml").unwrap();
         assert_eq!(file.designs.iter().map(|d| d.0.as_str()).collect::<Vec<_>>(), ["zebra", "ant"]);
@@ -412,7 +412,7 @@ mod tests {
     }
 
     #[test]
-    fn cli_limits_and_tables_say_what_they_expect() {
+    fn prop_limits_and_tables_say_what_they_expect() {
         let message = error(&format!("{SHORT}[comfort]\npmv_limits = 3\n"));
         assert!(message.contains("{ from = 0.0, to = 2.0, step = 0.125 } or a list"), "{message}");
         let message = error(&format!("{SHORT}[designs.x]\nheating = \"hp\"\nheating_cop = [1.0]\n"));

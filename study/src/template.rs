@@ -86,7 +86,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn cli_the_template_is_a_study_with_the_defaults() {
+    fn prop_the_template_is_a_study_with_the_defaults() {
         let text = render(&Template {
             name: "a \"name\"",
             note: Some("a note"),

@@ -12,7 +12,7 @@ use store::{CheckRow, Store, StoredGrid, StoredOptimum, VerificationRow};
 use study::Study;
 
 use crate::optima::vote_form;
-use crate::run::now;
+use crate::record::now;
 use crate::{PROGRAM_VERSION, PipelineError, Progress};
 use table::{Kind, Table};
 
@@ -104,7 +104,7 @@ pub fn verify(study: Study, part: Part, progress: &dyn Progress) -> Result<Verif
 
     let checks: Vec<CheckRow> = table.rows();
     let row = VerificationRow {
-        finished_utc: now(),
+        finished: now(),
         program_version: PROGRAM_VERSION.to_owned(),
         study_hash: study.hash.clone(),
         fraction: part.fraction,

@@ -2,8 +2,8 @@
 
 use super::missing_names;
 use crate::StudyReport;
+use crate::answer::answer;
 use crate::document::{Block, Prose, Section, Span};
-use crate::headline::answer;
 
 pub(super) fn section(study: &StudyReport) -> Section {
     let versions =

@@ -1,0 +1,203 @@
+//! Where missions are found, and which of them cannot be used.
+
+use chrono::{DateTime, NaiveDateTime, TimeDelta, Utc};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use crate::files::{extension, label, list, open_archive};
+use crate::{Content, FileKind, FileRecord, Finding, FindingKind, IngestError};
+
+/// No mission is longer; a name that says so is a misprint.
+const MAX_DURATION: TimeDelta = TimeDelta::days(7);
+
+/// A mission file that was found.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct MissionSource {
+    /// Name of the mission: the file's name without its extension.
+    pub name: String,
+    /// Path as the study names it; the entry of an archive follows a `!`.
+    pub path: String,
+    /// Number of the bus.
+    pub bus: u32,
+    /// First second, from the name.
+    pub start: DateTime<Utc>,
+    /// Last second, from the name.
+    pub end: DateTime<Utc>,
+    place: Place,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq)]
+enum Place {
+    File(PathBuf),
+    Entry { archive: PathBuf, index: usize },
+}
+
+/// What was found where the study says that missions are.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Discovery {
+    /// The missions of the wanted buses, by name.
+    pub missions: Vec<MissionSource>,
+    /// Files that look like missions and cannot be used, by path.
+    pub refused: Vec<FileRecord>,
+}
+
+/// Finds missions in a folder, a glob, one file or a `.zip`, relative to `base`. No `buses` means all of them.
+///
+/// The path must be there and hold at least one mission of the wanted buses. Files with the extension `csv` that are
+/// no mission, other than `metaData.csv`, are refused with a finding.
+///
+/// # Errors
+/// [`IngestError`] where the path does not exist or holds no mission.
+pub fn discover(base: &Path, pattern: &str, buses: &[u32]) -> Result<Discovery, IngestError> {
+    let mut found = Discovery::default();
+    for path in list(base, pattern)? {
+        match extension(&path).as_str() {
+            "csv" => found.take(&label(base, &path), &path, Place::File(path.clone())),
+            "zip" => found.take_archive(base, &path),
+            _ => {}
+        }
+    }
+    let mut others: Vec<u32> = found.missions.iter().map(|m| m.bus).collect();
+    found.missions.retain(|m| buses.is_empty() || buses.contains(&m.bus));
+    found.missions.sort_by(|a, b| (&a.name, &a.path).cmp(&(&b.name, &b.path)));
+    found.refuse_twins();
+    found.refused.sort_by(|a, b| a.path.cmp(&b.path));
+    if found.missions.is_empty() {
+        others.sort_unstable();
+        others.dedup();
+        let detail = match (others.is_empty(), found.refused.first()) {
+            (false, _) => format!("of the buses {buses:?}, but of {others:?}; change `buses`"),
+            (true, Some(file)) => format!("that can be used; {}: {}", file.path, file.findings[0]),
+            (true, None) => {
+                "(files named B183_2021-07-26_03-53-27_2021-07-26_07-18-47.csv, or a .zip of them)".to_owned()
+            }
+        };
+        return Err(IngestError::NoMissions { path: base.join(pattern), detail });
+    }
+    Ok(found)
+}
+
+impl Discovery {
+    fn take(&mut self, label: &str, file: &Path, place: Place) {
+        let stem = file.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+        if stem.eq_ignore_ascii_case("metaData") {
+            return;
+        }
+        match parse_name(&stem) {
+            Ok((bus, start, end)) => {
+                self.missions.push(MissionSource { name: stem, path: label.to_owned(), bus, start, end, place });
+            }
+            Err(reason) => self.refuse(label, Finding::whole(FindingKind::NotAMission, reason)),
+        }
+    }
+
+    fn take_archive(&mut self, base: &Path, path: &Path) {
+        let label = label(base, path);
+        let mut archive = match open_archive(path) {
+            Ok(archive) => archive,
+            Err(error) => {
+                let message = format!("not a readable zip archive: {error}; fetch it again");
+                return self.refuse(&label, Finding::whole(FindingKind::Unreadable, message));
+            }
+        };
+        for index in 0..archive.len() {
+            let (entry_label, inside) = match archive.by_index_raw(index) {
+                Ok(entry) if entry.is_dir() => continue,
+                Ok(entry) => {
+                    let name = String::from_utf8_lossy(entry.name_raw()).into_owned();
+                    (format!("{label}!{name}"), entry.enclosed_name())
+                }
+                Err(error) => {
+                    let message = format!("the entry cannot be read: {error}; fetch the archive again");
+                    self.refuse(&format!("{label}!{index}"), Finding::whole(FindingKind::Unreadable, message));
+                    continue;
+                }
+            };
+            match inside {
+                Some(file) if extension(&file) == "csv" => {
+                    self.take(&entry_label, &file, Place::Entry { archive: path.to_owned(), index });
+                }
+                Some(_) => {}
+                None => {
+                    let message =
+                        "its path leads out of the archive; such an archive is broken or hostile: fetch it again";
+                    self.refuse(&entry_label, Finding::whole(FindingKind::UnsafePath, message));
+                }
+            }
+        }
+    }
+
+    /// The same mission twice would count twice: the first path is kept.
+    fn refuse_twins(&mut self) {
+        let mut kept: BTreeMap<String, String> = BTreeMap::new();
+        for mission in std::mem::take(&mut self.missions) {
+            if let Some(first) = kept.get(&mission.name) {
+                let message = format!("the mission is there already as {first}; remove one of them");
+                self.refuse(&mission.path, Finding::whole(FindingKind::Overlap, message));
+                continue;
+            }
+            kept.insert(mission.name.clone(), mission.path.clone());
+            self.missions.push(mission);
+        }
+    }
+
+    fn refuse(&mut self, path: &str, finding: Finding) {
+        self.refused.push(FileRecord::refused(path, FileKind::Mission, "", 0, finding));
+    }
+}
+
+/// Bus, first and last second from `B183_2021-07-26_03-53-27_2021-07-26_07-18-47`.
+fn parse_name(stem: &str) -> Result<(u32, DateTime<Utc>, DateTime<Utc>), String> {
+    let parsed = || {
+        let (bus, times) = stem.strip_prefix('B')?.split_once('_')?;
+        let (start, end) = (times.get(..19)?, times.get(20..)?);
+        let time = |text| NaiveDateTime::parse_from_str(text, "%Y-%m-%d_%H-%M-%S").ok().map(|t| t.and_utc());
+        Some((bus.parse().ok()?, time(start)?, time(end)?))
+    };
+    let form = "B<bus>_<first second>_<last second>.csv, such as B183_2021-07-26_03-53-27_2021-07-26_07-18-47.csv";
+    let (bus, start, end) = parsed().ok_or_else(|| format!("the name is not that of a mission: {form}"))?;
+    if end < start || end - start > MAX_DURATION {
+        return Err(format!("the name says a mission from {start} to {end}; it must last from 1 s to 7 days"));
+    }
+    Ok((bus, start, end))
+}
+
+impl MissionSource {
+    /// Reads the bytes into a buffer, which may be that of a mission that is done with.
+    ///
+    /// # Errors
+    /// The record of a refused file.
+    pub fn load(&self, buffer: Vec<u8>) -> Result<Content, FileRecord> {
+        let content = match &self.place {
+            Place::File(path) => Content::read_into(path, buffer),
+            Place::Entry { archive, index } => Content::read_entry(archive, *index, buffer),
+        };
+        content.map_err(|finding| FileRecord::refused(&self.path, FileKind::Mission, "", 0, finding))
+    }
+}
+
+/// Missions during which the bus is on another mission already, as (index, the other's path). Of two that overlap, the
+/// one that starts later goes (of two that start together, the later name). `missions` are sorted by name.
+#[must_use]
+pub fn overlaps(missions: &[MissionSource]) -> Vec<(usize, FileRecord)> {
+    let mut order: Vec<usize> = (0..missions.len()).collect();
+    order.sort_by_key(|&i| (missions[i].bus, missions[i].start, i));
+    let mut refused = Vec::new();
+    let mut last: Option<&MissionSource> = None;
+    for i in order {
+        let mission = &missions[i];
+        match last {
+            Some(other) if other.bus == mission.bus && mission.start <= other.end => {
+                let message = format!(
+                    "bus {} is on the mission {} until {}; one of them is wrong: remove it",
+                    mission.bus, other.path, other.end
+                );
+                let finding = Finding::whole(FindingKind::Overlap, message);
+                refused.push((i, FileRecord::refused(&mission.path, FileKind::Mission, "", 0, finding)));
+            }
+            _ => last = Some(mission),
+        }
+    }
+    refused.sort_by_key(|(i, _)| *i);
+    refused
+}

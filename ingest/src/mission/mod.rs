@@ -1,0 +1,168 @@
+//! ZTBus missions: where they are found, and what their telemetry says of each segment.
+
+mod discover;
+mod rows;
+
+use cabin::LoadChange;
+use chrono::{DateTime, TimeDelta, Utc};
+
+use crate::segments::{Clock, Sums};
+use crate::telemetry::{TIME, Telemetry};
+use crate::{Content, ExcludedSegment, ExclusionReason, FileKind, FileRecord, Finding, FindingKind};
+use rows::Reader;
+
+pub use discover::{Discovery, MissionSource, discover, overlaps};
+
+/// Share of a segment's seconds that may be without telemetry.
+const MAX_MISSING_SHARE: f64 = 0.01;
+
+/// How missions become segments.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MissionOptions {
+    /// Length of a segment in s, counted from the start of each mission; 3600 in the paper.
+    pub segment_s: u32,
+    /// Share of the doors that open when "a door is open": 0.6 in the paper (section 2.1).
+    pub door_open_share: f64,
+    /// Whether a last part that is shorter than a segment makes a segment of its own.
+    pub keep_partial: bool,
+}
+
+/// What the telemetry says of a part of a mission.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Segment {
+    /// Name of the mission.
+    pub mission: String,
+    /// Path of its file, as the study names it.
+    pub source_path: String,
+    /// Number of the bus.
+    pub bus: u32,
+    /// Number of the segment, from 0.
+    pub segment: u32,
+    /// Its start.
+    pub start: DateTime<Utc>,
+    /// Its length in s.
+    pub duration_s: u32,
+    /// Mean number of passengers.
+    pub passengers: f64,
+    /// Mean fraction of the doors that is open.
+    pub door_open_fraction: f64,
+    /// First line of the mission file that belongs to it; the header is line 1.
+    pub first_line: u64,
+    /// Last line.
+    pub last_line: u64,
+}
+
+/// A mission that was read.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MissionReading {
+    /// What is known of its file.
+    pub file: FileRecord,
+    /// Its segments, in order.
+    pub segments: Vec<Segment>,
+    /// Segments that its telemetry cannot fill.
+    pub excluded: Vec<ExcludedSegment>,
+    /// How passengers and doors change, in the order of time; before the first the bus is empty and closed.
+    pub loads: Vec<LoadChange>,
+}
+
+/// What the telemetry of a mission says of each of its segments.
+///
+/// A row at `t` stands for `[t, t + 1)`. The last passenger count holds until the next, and before the first the bus is
+/// empty; a door flag that is missing holds the last one.
+#[must_use]
+pub fn read(source: &MissionSource, content: &Content, options: &MissionOptions) -> MissionReading {
+    let bytes = content.bytes.len() as u64;
+    let refused = |finding| MissionReading {
+        file: FileRecord::refused(&source.path, FileKind::Mission, &content.blake3, bytes, finding),
+        segments: Vec::new(),
+        excluded: Vec::new(),
+        loads: Vec::new(),
+    };
+    let telemetry = match Telemetry::read(&content.bytes) {
+        Ok(telemetry) => telemetry,
+        Err(finding) => return refused(finding),
+    };
+    let clock = Clock {
+        start_s: source.start.timestamp(),
+        end_s: source.end.timestamp() + 1,
+        segment_s: i64::from(options.segment_s),
+    };
+    let mut reader = Reader::new(clock);
+    telemetry.for_each(|i, row| reader.take(i, row));
+    let Reader { adder, notes, span, loads, .. } = reader;
+    let Some((first_s, last_s)) = span else {
+        let (start, end) = (source.start, source.end);
+        let message = format!("no row lies between {start} and {end}, as the file's name says; check name and {TIME}");
+        return refused(Finding::whole(FindingKind::RefusedRow, message).in_column(TIME));
+    };
+
+    let mut findings = notes.findings(&telemetry, &content.bytes, last_s);
+    if last_s + 1 < clock.end_s {
+        let message = format!(
+            "the telemetry ends {} s before the file's name says; whole segments are kept: fetch the file again",
+            clock.end_s - 1 - last_s
+        );
+        let line = telemetry.line(telemetry.len() - 1);
+        findings.push(Finding::whole(FindingKind::Truncated, message).at_line(line));
+    }
+    let (segments, excluded) = segments(source, clock, options, &adder.finish(), &telemetry);
+    let time = |seconds| DateTime::from_timestamp(seconds, 0);
+    let file = FileRecord {
+        path: source.path.clone(),
+        kind: FileKind::Mission,
+        blake3: content.blake3.clone(),
+        bytes,
+        rows: telemetry.len() as u64,
+        first: time(first_s),
+        last: time(last_s),
+        accepted: true,
+        findings,
+    };
+    MissionReading { file, segments, excluded, loads }
+}
+
+fn segments(
+    source: &MissionSource,
+    clock: Clock,
+    options: &MissionOptions,
+    sums: &[Sums],
+    telemetry: &Telemetry,
+) -> (Vec<Segment>, Vec<ExcludedSegment>) {
+    let (mut kept, mut excluded) = (Vec::new(), Vec::new());
+    for (number, sums) in sums.iter().enumerate() {
+        let start_s = clock.start_s + number as i64 * clock.segment_s;
+        let duration_s = clock.segment_s.min(clock.end_s - start_s);
+        let start = source.start + TimeDelta::seconds(start_s - clock.start_s);
+        let missing = (duration_s - sums.observed_s) as f64;
+        let reason = if duration_s < clock.segment_s && !options.keep_partial {
+            Some(ExclusionReason::Partial { segment_s: options.segment_s })
+        } else if missing > MAX_MISSING_SHARE * duration_s as f64 {
+            Some(ExclusionReason::TelemetryGap)
+        } else {
+            None
+        };
+        match (reason, sums.rows) {
+            (None, Some((first, last))) => kept.push(Segment {
+                mission: source.name.clone(),
+                source_path: source.path.clone(),
+                bus: source.bus,
+                segment: number as u32,
+                start,
+                duration_s: duration_s as u32,
+                passengers: sums.passenger_seconds / duration_s as f64,
+                door_open_fraction: sums.door_seconds as f64 / duration_s as f64 * options.door_open_share,
+                first_line: telemetry.line(first),
+                last_line: telemetry.line(last),
+            }),
+            (reason, _) => excluded.push(ExcludedSegment {
+                mission: source.name.clone(),
+                bus: source.bus,
+                segment: number as u32,
+                start,
+                duration_s: duration_s as u32,
+                reason: reason.unwrap_or(ExclusionReason::TelemetryGap).to_string(),
+            }),
+        }
+    }
+    (kept, excluded)
+}

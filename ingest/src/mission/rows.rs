@@ -1,0 +1,158 @@
+//! The rows of a mission, taken in one by one, with what is wrong in them.
+
+use cabin::LoadChange;
+
+use crate::segments::{Adder, Clock};
+use crate::telemetry::{AMBIENT, DOOR, PASSENGERS, Row, TIME, Telemetry};
+use crate::{Finding, FindingKind};
+
+/// Largest believable number of passengers: an articulated bus holds about 150.
+const MAX_PASSENGERS: f64 = 250.0;
+/// Below this a temperature in K is one in °C.
+const COLDEST_K: f64 = 150.0;
+
+/// Something that happened in rows: how often, and where first.
+#[derive(Debug, Clone, Copy, Default)]
+struct Note {
+    count: u64,
+    row: Option<usize>,
+}
+
+impl Note {
+    fn at(&mut self, row: usize) {
+        self.count += 1;
+        self.row.get_or_insert(row);
+    }
+}
+
+/// What was noticed while reading rows.
+#[derive(Debug, Default)]
+pub(super) struct Notes {
+    unreadable_time: Note,
+    outside: Note,
+    backwards: Note,
+    duplicate: Note,
+    gaps: Note,
+    gap_seconds: i64,
+    unreadable_passengers: Note,
+    impossible_passengers: Note,
+    unreadable_door: Note,
+    impossible_door: Note,
+    missing_door: Note,
+    last_missing_door_s: i64,
+    unreadable_ambient: Note,
+    celsius: Note,
+}
+
+pub(super) struct Reader {
+    clock: Clock,
+    pub adder: Adder,
+    pub notes: Notes,
+    /// First and last second that has a row.
+    pub span: Option<(i64, i64)>,
+    pub loads: Vec<LoadChange>,
+}
+
+impl Reader {
+    pub fn new(clock: Clock) -> Self {
+        Self { clock, adder: Adder::new(clock), notes: Notes::default(), span: None, loads: Vec::new() }
+    }
+
+    pub fn take(&mut self, i: usize, row: Row) {
+        let notes = &mut self.notes;
+        let Some(time_s) = row.time_s else { return notes.unreadable_time.at(i) };
+        if time_s < self.clock.start_s || time_s >= self.clock.end_s {
+            return notes.outside.at(i);
+        }
+        let next_s = self.adder.next_s();
+        if let Some((_, last_s)) = self.span
+            && time_s <= last_s
+        {
+            let note = if time_s == last_s { &mut notes.duplicate } else { &mut notes.backwards };
+            return note.at(i);
+        }
+        if time_s > next_s {
+            notes.gaps.at(i);
+            notes.gap_seconds += time_s - next_s;
+        }
+        let mut state = self.adder.state();
+        match row.passengers {
+            Some(count) if (0.0..=MAX_PASSENGERS).contains(&count) => state.passengers = count,
+            Some(count) if count.is_nan() => {}
+            Some(_) => notes.impossible_passengers.at(i),
+            None => notes.unreadable_passengers.at(i),
+        }
+        match row.door {
+            Some(1.0) => state.door_open = true,
+            Some(0.0) => state.door_open = false,
+            Some(flag) if flag.is_nan() => {
+                notes.missing_door.at(i);
+                notes.last_missing_door_s = time_s;
+            }
+            Some(_) => notes.impossible_door.at(i),
+            None => notes.unreadable_door.at(i),
+        }
+        match row.ambient_k {
+            Some(kelvin) if kelvin < COLDEST_K => notes.celsius.at(i),
+            Some(_) => {}
+            None => notes.unreadable_ambient.at(i),
+        }
+        if state != self.adder.state() {
+            let second = (time_s - self.clock.start_s) as u32;
+            self.loads.push(LoadChange { second, passengers: state.passengers, door_open: state.door_open });
+        }
+        self.adder.add(i, time_s, state);
+        self.span = Some((self.span.map_or(time_s, |(first, _)| first), time_s));
+    }
+}
+
+impl Notes {
+    pub fn findings(mut self, telemetry: &Telemetry, bytes: &[u8], last_s: i64) -> Vec<Finding> {
+        use FindingKind::{DuplicateRow, MissingValue, OutOfRange, RefusedRow, RefusedValue, TimeGap, WrongUnit};
+        // The last row of a mission may have no flags: nothing follows that would need them.
+        if self.missing_door.count == 1 && self.last_missing_door_s == last_s {
+            self.missing_door = Note::default();
+        }
+        let gaps = format!("{} s without a row; the state before holds", self.gap_seconds);
+        let notes: [(Note, FindingKind, &str, &str); 12] = [
+            (self.unreadable_time, RefusedRow, TIME, "not a whole number of seconds since 1970; correct the rows"),
+            (self.outside, RefusedRow, TIME, "outside the span that the file's name says; correct rows or name"),
+            (self.backwards, RefusedRow, TIME, "time runs backwards; sort the file by time"),
+            (self.duplicate, DuplicateRow, TIME, "the same second again; the first row counts"),
+            (self.gaps, TimeGap, TIME, &gaps),
+            (self.unreadable_passengers, RefusedValue, PASSENGERS, "not a number; the last count holds"),
+            (self.impossible_passengers, OutOfRange, PASSENGERS, "outside 0 … 250 passengers; the last count holds"),
+            (self.unreadable_door, RefusedValue, DOOR, "not 0, 1 or NaN; the last state holds"),
+            (self.impossible_door, OutOfRange, DOOR, "not 0, 1 or NaN; the last state holds"),
+            (self.missing_door, MissingValue, DOOR, "no state; the last one holds"),
+            (self.unreadable_ambient, RefusedValue, AMBIENT, "not a number; the column is checked, not used"),
+            (self.celsius, WrongUnit, AMBIENT, "below 150 K, probably in °C; the column is checked, not used"),
+        ];
+        let noticed = notes.into_iter().filter_map(|(note, kind, column, message)| {
+            let row = note.row?;
+            let line = telemetry.line(row);
+            let text = match kind {
+                RefusedRow | RefusedValue | OutOfRange | WrongUnit => match text_at(bytes, line, column) {
+                    Some(text) => format!("{text:?}: {message}"),
+                    None => message.to_owned(),
+                },
+                _ => message.to_owned(),
+            };
+            let finding = Finding::whole(kind, text).in_column(column).at_line(line);
+            Some(finding.times(note.count))
+        });
+        noticed.collect()
+    }
+}
+
+/// The text of a field on a line, cut to a length that fits a message.
+fn text_at(bytes: &[u8], line: u64, column: &str) -> Option<String> {
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let position = csv::Reader::from_reader(bytes).headers().ok()?.iter().position(|h| h.trim() == column)?;
+    let before = usize::try_from(line).ok()?.checked_sub(2)?;
+    let start = bytes.iter().enumerate().filter(|(_, b)| **b == b'\n').nth(before)?.0 + 1;
+    let end = bytes[start..].iter().position(|&b| b == b'\n').map_or(bytes.len(), |n| start + n);
+    let mut reader = csv::ReaderBuilder::new().has_headers(false).flexible(true).from_reader(&bytes[start..end]);
+    let record = reader.byte_records().next()?.ok()?;
+    Some(String::from_utf8_lossy(record.get(position)?).chars().take(40).collect())
+}

@@ -1,0 +1,78 @@
+//! What the simulations of a study run on, and the key of each.
+
+use cabin::{Operation, Outcome, PassengerViews};
+use ingest::sample::Sample;
+use simulate::SIMULATION_VERSION;
+use std::collections::BTreeMap;
+use store::{SimulationId, Store, StoredGrid};
+use study::{Study, keys};
+
+use crate::PipelineError;
+use crate::missions::{WeatherAndShade, span};
+
+/// What the simulations of a study run on.
+pub(crate) struct Bench<'a> {
+    pub study: &'a Study,
+    pub grid: StoredGrid,
+    pub views: PassengerViews,
+    pub surroundings: WeatherAndShade<'a>,
+    pub missions: Vec<Vec<Sample>>,
+}
+
+impl Bench<'_> {
+    /// The key of every simulation that the study asks for: samples and optima of the mission, weather and shade in time,
+    /// design, window, and how the bus behaves.
+    pub fn keys(&self) -> BTreeMap<SimulationId, String> {
+        let dynamics = format!("{:?} {SIMULATION_VERSION}", self.study.dynamics);
+        let mut keys = BTreeMap::new();
+        for samples in &self.missions {
+            let sample_keys: Vec<&str> = samples.iter().map(|s| s.key.as_str()).collect();
+            let mission = keys::hash(&[&sample_keys.join(" "), &self.surroundings.key(span(samples)), &dynamics]);
+            for id in self.ids(samples) {
+                let w = self.study.grid.windows()[id.window];
+                let window = format!("{} {}", w.pmv_min(), w.pmv_max());
+                let key = keys::hash(&[&mission, &self.study.design_rows[id.design].design_key, &window]);
+                keys.insert(id, key);
+            }
+        }
+        keys
+    }
+
+    /// What is simulated of a mission, in the order of the study.
+    pub fn ids(&self, samples: &[Sample]) -> Vec<SimulationId> {
+        let source_path = &samples[0].segment.source_path;
+        let designs = 0..self.study.grid.designs().len();
+        let of_design = |design| {
+            let id = move |&window: &usize| SimulationId { source_path: source_path.clone(), design, window };
+            self.study.simulated_windows.iter().map(id)
+        };
+        designs.flat_map(of_design).collect()
+    }
+}
+
+/// The optima of a mission's segments by design and window, or which segment has none.
+type MissionOptima = BTreeMap<(usize, usize), Result<Vec<Operation>, String>>;
+
+pub(crate) fn optima(store: &mut Store, grid: &StoredGrid, samples: &[Sample]) -> Result<MissionOptima, PipelineError> {
+    // Ids of a mission's samples rise with time; those of other buses lie elsewhere.
+    let rows = store.optima(grid, samples[0].id, samples[samples.len() - 1].id)?;
+    let mut found: BTreeMap<(usize, usize), BTreeMap<i64, Outcome>> = BTreeMap::new();
+    for row in &rows {
+        if let Some(outcome) = row.outcome {
+            found.entry((row.design, row.window)).or_default().insert(row.sample_id, outcome);
+        }
+    }
+    let mut optima = BTreeMap::new();
+    for design in 0..grid.designs.len() {
+        for window in 0..grid.windows.len() {
+            let outcomes = found.remove(&(design, window)).unwrap_or_default();
+            let operation = |s: &Sample| match outcomes.get(&s.id) {
+                Some(Outcome::Solved(operation, _)) => Ok(*operation),
+                Some(other) => Err(format!("segment {} has no optimum: {}", s.segment.segment, other.words())),
+                None => Err(format!("segment {} has no optimum", s.segment.segment)),
+            };
+            optima.insert((design, window), samples.iter().map(operation).collect());
+        }
+    }
+    Ok(optima)
+}
