@@ -3,6 +3,9 @@
 use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
+/// More threads than any machine has cores only cost memory.
+const MOST_THREADS: i64 = 1024;
+
 /// What thermal comfort in an electric city bus costs over a whole year.
 ///
 /// Exit status: 0 done; 1 finished, but points stayed unsolved or inputs were refused; 2 usage or study file wrong;
@@ -21,9 +24,13 @@ pub struct Args {
     #[arg(long, global = true)]
     pub quiet: bool,
 
+    /// Read every input again, also those that look as they did.
+    #[arg(long, global = true)]
+    pub rehash: bool,
+
     /// Threads that compute; as many as cores without it. Results do not depend on it.
-    #[arg(long, global = true, value_name = "N")]
-    pub threads: Option<usize>,
+    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
+    pub threads: Option<u16>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

@@ -44,7 +44,7 @@ fn main() -> ExitCode {
 fn dispatch(args: &Args, console: &Console) -> Result<Ending, Failure> {
     if let Some(threads) = args.threads {
         rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
+            .num_threads(threads.into())
             .build_global()
             .map_err(|e| Failure::Usage(anyhow!("--threads {threads}: {e}")))?;
     }
@@ -58,9 +58,9 @@ fn dispatch(args: &Args, console: &Console) -> Result<Ending, Failure> {
             prepare::init(dir)?;
             Ok(Ending::Done)
         }
-        Command::Canyon(args) => {
-            let study = open(&args.study)?;
-            let (path, kinds) = pipeline::write_canyon(&study, &args.street_azimuths_deg, &args.heights_to_width)?;
+        Command::Canyon(canyon) => {
+            let study = open(&canyon.study)?;
+            let (path, kinds) = pipeline::write_canyon(&study, &canyon.street_azimuths_deg, &canyon.heights_to_width)?;
             say(format_args!("{} is written: the shade of {kinds} kinds of street canyons", path.display()))?;
             Ok(Ending::Done)
         }
@@ -68,18 +68,20 @@ fn dispatch(args: &Args, console: &Console) -> Result<Ending, Failure> {
             let study = open(study)?;
             print::check(&study, &pipeline::check(&study)?)
         }
-        Command::Ingest(study) => run(&open(study)?, &[Stage::Ingest], console),
-        Command::Shade(study) => run(&open(study)?, &[Stage::Shade], console),
-        Command::Solve(args) => run(&open(&args.study)?.solved_by(args.method.into()), &[Stage::Solve], console),
-        Command::Simulate(study) => run(&open(study)?, &[Stage::Simulate], console),
-        Command::Report(study) => run(&open(study)?, &[Stage::Report], console),
-        Command::Run(args) => {
-            let study = if args.study.study.is_none() && !Path::new(STUDY_FILE).exists() {
-                StudyArgs { study: Some(prepare::demo_study(console)?), db: args.study.db.clone() }
+        Command::Ingest(study) => run(&open(study)?, &[Stage::Ingest], args.rehash, console),
+        Command::Shade(study) => run(&open(study)?, &[Stage::Shade], args.rehash, console),
+        Command::Solve(solve) => {
+            run(&open(&solve.study)?.solved_by(solve.method.into()), &[Stage::Solve], args.rehash, console)
+        }
+        Command::Simulate(study) => run(&open(study)?, &[Stage::Simulate], args.rehash, console),
+        Command::Report(study) => run(&open(study)?, &[Stage::Report], args.rehash, console),
+        Command::Run(typed) => {
+            let study = if typed.study.study.is_none() && !Path::new(STUDY_FILE).exists() {
+                StudyArgs { study: Some(prepare::demo_study(console)?), db: typed.study.db.clone() }
             } else {
-                args.study.clone()
+                typed.study.clone()
             };
-            run(&open(&study)?.solved_by(args.method.into()), &Stage::ALL, console)
+            run(&open(&study)?.solved_by(typed.method.into()), &Stage::ALL, args.rehash, console)
         }
         Command::Verify { study, part } => {
             let study = open(study)?;
@@ -96,9 +98,9 @@ fn dispatch(args: &Args, console: &Console) -> Result<Ending, Failure> {
 }
 
 /// Runs stages and says what came of it.
-fn run(study: &Study, stages: &[Stage], console: &Console) -> Result<Ending, Failure> {
+fn run(study: &Study, stages: &[Stage], rehash: bool, console: &Console) -> Result<Ending, Failure> {
     let begin = Instant::now();
-    let done = pipeline::run(study, stages, console)?;
+    let done = pipeline::run(study, stages, rehash, console)?;
     print::run(study, stages, &done, begin.elapsed())
 }
 

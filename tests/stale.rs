@@ -131,3 +131,75 @@ fn cli_a_mission_that_cannot_be_simulated_is_a_row_with_a_reason() {
     assert!(scratch.read("report/report.md").contains("- **1 missions are not simulated**"));
     assert!(scratch.read("report/simulation_failures.csv").contains("segment 0 has no optimum"));
 }
+
+/// Writes a file in place and gives it a time of its own, as if nobody had.
+fn write_unnoticed(scratch: &Scratch, name: &str, content: &str) {
+    let long_ago = std::time::SystemTime::UNIX_EPOCH + std::time::Duration::from_secs(1_700_000_000);
+    scratch.write(name, content);
+    let file = std::fs::File::options().write(true).open(scratch.path(name)).unwrap();
+    file.set_modified(long_ago).unwrap();
+}
+
+#[test]
+fn cli_a_file_that_looks_as_it_did_is_read_again_only_when_asked() {
+    let scratch = Scratch::demo(3);
+    scratch.edit("study.toml", "pmv_limits = [0.0, 0.5, 1.0, 1.5, 2.0]", "pmv_limits = []");
+    let mission = format!("ztbus/{}", scratch.missions()[1]);
+    let text = scratch.read(&mission);
+    write_unnoticed(&scratch, &mission, &text);
+    write_unnoticed(&scratch, WEATHER, &scratch.read(WEATHER));
+    scratch.expect(0, &["run"]);
+    let samples = scratch.query("SELECT passengers FROM sample ORDER BY sample_id");
+
+    // One passenger more or less from somewhere on, at the same length.
+    let (line, more) = text
+        .lines()
+        .find_map(|l| {
+            let column = text.lines().next()?.split(',').position(|h| h == "itcs_numberOfPassengers")?;
+            let fields: Vec<&str> = l.split(',').collect();
+            let count: f64 = fields.get(column)?.parse().ok().filter(|c| *c > 1.0 && *c < 8.0)?;
+            let mut changed = fields.clone();
+            let other = fields[column].replacen(&format!("{count:.0}"), &format!("{:.0}", count + 1.0), 1);
+            changed[column] = &other;
+            Some((l.to_owned(), changed.join(",")))
+        })
+        .unwrap();
+    write_unnoticed(&scratch, &mission, &text.replacen(&line, &more, 1));
+    let run = scratch.expect(0, &["run"]);
+    assert!(run.stderr.contains("0 read now"), "{}", run.stderr);
+    assert!(samples == scratch.query("SELECT passengers FROM sample ORDER BY sample_id"));
+    let run = scratch.expect(0, &["run", "--rehash"]);
+    assert!(run.stderr.contains("1 read now"), "{}", run.stderr);
+    assert!(samples != scratch.query("SELECT passengers FROM sample ORDER BY sample_id"));
+    // Another time alone makes no other content.
+    std::fs::File::options()
+        .write(true)
+        .open(scratch.path(WEATHER))
+        .unwrap()
+        .set_modified(std::time::SystemTime::now())
+        .unwrap();
+    let run = scratch.expect(0, &["run"]);
+    assert!(run.stderr.contains("0 read now") && run.stderr.contains("0 new or changed"), "{}", run.stderr);
+}
+
+#[test]
+fn cli_weather_that_gives_no_sample_at_all_takes_nothing_away() {
+    let scratch = solved();
+    let optima = scratch.query("SELECT count(*) FROM optimum");
+    let text = scratch.read(WEATHER);
+    let three: Vec<&str> = text.lines().take(3).collect();
+    scratch.write(WEATHER, three.join("\n"));
+    let run = scratch.expect(3, &["run"]);
+    assert!(run.stderr.contains("no samples: "), "{}", run.stderr);
+    assert_eq!(scratch.query("SELECT count(*) FROM optimum"), optima);
+}
+
+#[test]
+fn cli_a_report_that_somebody_has_changed_is_written_again() {
+    let scratch = solved();
+    let report = scratch.report();
+    scratch.write("report/report.md", "mine");
+    std::fs::remove_file(scratch.path("report/pareto.svg")).unwrap();
+    scratch.expect(0, &["run"]);
+    assert!(report == scratch.report());
+}

@@ -1,8 +1,9 @@
 //! Finding files, reading their bytes, and writing them whole.
 
-use std::fs::File;
+use std::fs::{File, Metadata};
 use std::io::{BufReader, Read};
 use std::path::{Path, PathBuf};
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
 use zip::ZipArchive;
 
 use crate::{Finding, FindingKind, IngestError};
@@ -11,6 +12,60 @@ use crate::{Finding, FindingKind, IngestError};
 /// to more, is refused before it fills the memory.
 const MAX_BYTES: u64 = 128 << 20;
 
+/// What tells an unchanged file from a changed one without reading it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct FileStamp {
+    /// Size in bytes.
+    pub bytes: u64,
+    /// Time of the last modification in ns since 1970.
+    pub modified_ns: i64,
+    /// Number of the file in its file system; 0 where the system has none.
+    pub inode: u64,
+}
+
+/// A file that was modified less than this long ago can be modified again without a new time.
+const SETTLED: Duration = Duration::from_secs(2);
+
+impl FileStamp {
+    /// The stamp of a file; `None` where there is no such file or the system does not tell.
+    #[must_use]
+    pub fn of(path: &Path) -> Option<Self> {
+        Self::new(&std::fs::metadata(path).ok()?)
+    }
+
+    fn new(metadata: &Metadata) -> Option<Self> {
+        let since_1970 = metadata.modified().ok()?.duration_since(UNIX_EPOCH).ok()?;
+        let modified_ns = i64::try_from(since_1970.as_nanos()).ok()?;
+        Some(Self { bytes: metadata.len(), modified_ns, inode: inode(metadata) })
+    }
+
+    /// The stamp of a file that is about to be read, where it will vouch for what is read.
+    fn settled(metadata: &Metadata) -> Option<Self> {
+        let age = SystemTime::now().duration_since(metadata.modified().ok()?).ok()?;
+        if age < SETTLED { None } else { Self::new(metadata) }
+    }
+}
+
+#[cfg(unix)]
+fn inode(metadata: &Metadata) -> u64 {
+    std::os::unix::fs::MetadataExt::ino(metadata)
+}
+
+#[cfg(not(unix))]
+fn inode(_: &Metadata) -> u64 {
+    0
+}
+
+/// Reads files one after the other; keeps a buffer and an open archive from one to the next.
+#[derive(Default)]
+pub struct FileReader {
+    buffer: Vec<u8>,
+    archive: Option<(PathBuf, Archive)>,
+}
+
+/// An open archive.
+type Archive = ZipArchive<BufReader<File>>;
+
 /// The bytes of a file and their hash.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Content {
@@ -18,6 +73,8 @@ pub struct Content {
     pub bytes: Vec<u8>,
     /// BLAKE3 of the bytes, hexadecimal.
     pub blake3: String,
+    /// The file as it was before it was read; `None` where that vouches for nothing.
+    pub stamp: Option<FileStamp>,
 }
 
 impl Content {
@@ -25,7 +82,7 @@ impl Content {
     #[must_use]
     pub fn new(bytes: Vec<u8>) -> Self {
         let blake3 = blake3::hash(&bytes).to_hex().to_string();
-        Self { bytes, blake3 }
+        Self { bytes, blake3, stamp: None }
     }
 
     /// Reads a file.
@@ -33,25 +90,42 @@ impl Content {
     /// # Errors
     /// A finding that says why it cannot be read.
     pub fn read(path: &Path) -> Result<Self, Finding> {
-        Self::read_into(path, Vec::new())
+        FileReader::default().read(path)
     }
+}
 
-    /// Reads a file into a buffer that another one no longer needs.
-    pub(crate) fn read_into(path: &Path, buffer: Vec<u8>) -> Result<Self, Finding> {
-        let file = File::open(path).map_err(|e| unreadable(&e))?;
-        let size = file.metadata().map_err(|e| unreadable(&e))?.len();
-        limited(file, size, buffer)
-    }
-
-    /// Reads an entry of an archive.
+impl FileReader {
+    /// Reads a file.
     ///
     /// # Errors
     /// A finding that says why it cannot be read.
-    pub(crate) fn read_entry(archive: &Path, index: usize, buffer: Vec<u8>) -> Result<Self, Finding> {
-        let mut archive = open_archive(archive).map_err(|e| unreadable(&e))?;
+    pub(crate) fn read(&mut self, path: &Path) -> Result<Content, Finding> {
+        let file = File::open(path).map_err(|e| unreadable(&e))?;
+        let metadata = file.metadata().map_err(|e| unreadable(&e))?;
+        let content = limited(file, metadata.len(), std::mem::take(&mut self.buffer))?;
+        Ok(Content { stamp: FileStamp::settled(&metadata), ..content })
+    }
+
+    /// Reads an entry of an archive; the archive is opened once for all entries that follow each other.
+    ///
+    /// # Errors
+    /// A finding that says why it cannot be read.
+    pub(crate) fn read_entry(&mut self, path: &Path, index: usize) -> Result<Content, Finding> {
+        let metadata = std::fs::metadata(path).map_err(|e| unreadable(&e))?;
+        let archive = match self.archive.take() {
+            Some((open, archive)) if open == path => archive,
+            _ => open_archive(path).map_err(|e| unreadable(&e))?,
+        };
+        let (_, archive) = self.archive.insert((path.to_owned(), archive));
         let entry = archive.by_index(index).map_err(|e| unreadable(&e))?;
         let size = entry.size();
-        limited(entry, size, buffer)
+        let content = limited(entry, size, std::mem::take(&mut self.buffer))?;
+        Ok(Content { stamp: FileStamp::settled(&metadata), ..content })
+    }
+
+    /// Takes back the bytes of a file that is done with.
+    pub fn recycle(&mut self, content: Content) {
+        self.buffer = content.bytes;
     }
 }
 
@@ -87,7 +161,7 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
 }
 
 /// Opens an archive; its entries are read one by one, nothing is unpacked to disk.
-pub(crate) fn open_archive(path: &Path) -> Result<ZipArchive<BufReader<File>>, zip::result::ZipError> {
+pub(crate) fn open_archive(path: &Path) -> Result<Archive, zip::result::ZipError> {
     ZipArchive::new(BufReader::new(File::open(path)?))
 }
 

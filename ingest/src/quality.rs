@@ -3,6 +3,8 @@
 use chrono::{DateTime, Utc};
 use std::fmt;
 
+use crate::FileStamp;
+
 /// What a file holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum FileKind {
@@ -202,6 +204,8 @@ pub struct FileRecord {
     pub first: Option<DateTime<Utc>>,
     /// Last time in the file.
     pub last: Option<DateTime<Utc>>,
+    /// The file as it was before it was read; `None` where that vouches for nothing.
+    pub stamp: Option<FileStamp>,
     /// Whether the file is used.
     pub accepted: bool,
     /// What was noticed; a refused file has at least one.
@@ -209,6 +213,13 @@ pub struct FileRecord {
 }
 
 impl FileRecord {
+    /// The same record with the stamp of its file.
+    #[must_use]
+    pub fn stamped(mut self, stamp: Option<FileStamp>) -> Self {
+        self.stamp = stamp;
+        self
+    }
+
     /// The record of a file that cannot be used.
     #[must_use]
     pub fn refused(path: &str, kind: FileKind, blake3: &str, bytes: u64, finding: Finding) -> Self {
@@ -220,6 +231,7 @@ impl FileRecord {
             rows: 0,
             first: None,
             last: None,
+            stamp: None,
             accepted: false,
             findings: vec![finding],
         }

@@ -4,7 +4,7 @@
 
 use chrono::{DateTime, Utc};
 use ingest::mission::{MissionOptions, MissionReading, discover, overlaps, read};
-use ingest::{ExclusionReason, FindingKind, IngestError};
+use ingest::{ExclusionReason, FileReader, FindingKind, IngestError};
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -48,7 +48,7 @@ fn read_bytes(bytes: &[u8], options: &MissionOptions) -> MissionReading {
 
 fn read_folder(dir: &Path, options: &MissionOptions) -> Vec<MissionReading> {
     let found = discover(dir, "", &[]).unwrap();
-    found.missions.iter().map(|m| read(m, &m.load(Vec::new()).unwrap(), options)).collect()
+    found.missions.iter().map(|m| read(m, &m.load(&mut FileReader::default()).unwrap(), options)).collect()
 }
 
 /// The only finding of a kind.
@@ -300,7 +300,7 @@ fn xval_python_the_real_mission_has_the_rows_and_door_seconds_that_python_counts
     };
     let mission = &found.missions[0];
     let options = MissionOptions { keep_partial: true, ..OPTIONS };
-    let reading = read(mission, &mission.load(Vec::new()).unwrap(), &options);
+    let reading = read(mission, &mission.load(&mut FileReader::default()).unwrap(), &options);
     assert_eq!(reading.file.rows, 12_321);
     assert_eq!(reading.file.findings, []);
     assert_eq!(reading.segments.len(), 4);

@@ -4,6 +4,7 @@
 //! Reads the real mission under `$BUSCLIMATE_DATA` or `../shared/data`, many times over; nothing is measured without it.
 
 use divan::counter::ItemsCount;
+use ingest::FileReader;
 use ingest::mission::{MissionOptions, discover, read};
 use pipeline::in_order;
 use std::path::PathBuf;
@@ -30,10 +31,10 @@ fn real_mission(bencher: divan::Bencher, readers: usize) {
     let rows = (found.missions[0].end - found.missions[0].start).num_seconds() + 1;
     bencher.counter(ItemsCount::new(COPIES * rows as usize)).bench(|| {
         // Reading and hashing the file belongs to the work.
-        let read = |buffer: &mut Vec<u8>, (): &()| {
-            let content = found.missions[0].load(std::mem::take(buffer)).expect("the mission is readable");
+        let read = |reader: &mut FileReader, (): &()| {
+            let content = found.missions[0].load(reader).expect("the mission is readable");
             let segments = read(&found.missions[0], &content, &OPTIONS).segments.len();
-            *buffer = content.bytes;
+            reader.recycle(content);
             segments
         };
         let mut segments = 0;

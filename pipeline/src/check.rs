@@ -42,7 +42,7 @@ pub struct Check {
 /// # Errors
 /// [`PipelineError`] where inputs cannot be used.
 pub fn check(study: &Study) -> Result<Check, PipelineError> {
-    let inputs = Inputs::new(study);
+    let inputs = Inputs::new(study, true);
     let found = mission::discover(&study.base, &study.missions_path, &study.buses)?;
     let overlapping = mission::overlaps(&found.missions);
     let (_, weather) = inputs.weather()?;

@@ -4,11 +4,13 @@
 //! differs from its record is one that the samples do not know yet.
 
 use ingest::FileKind;
+use simulate::SIMULATION_VERSION;
 use std::collections::BTreeMap;
 use store::Store;
-use study::Study;
+use study::{Study, keys};
 
-use crate::{Inputs, PipelineError};
+use crate::record::input_hash;
+use crate::{Inputs, PROGRAM_VERSION, PipelineError};
 
 /// Something stored was made from something else than what there is now.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -22,9 +24,11 @@ pub struct Stale {
 
 /// The samples against the inputs and the segments: `None` where they are fresh.
 pub(crate) fn samples(inputs: &Inputs, store: &mut Store) -> Result<Option<Stale>, PipelineError> {
-    let now: BTreeMap<String, String> = inputs.records()?.into_iter().map(|(record, key)| (record.path, key)).collect();
-    let mut then = store.reading_keys(FileKind::Weather)?;
-    then.append(&mut store.reading_keys(FileKind::Shadow)?);
+    let now = inputs.keys(store)?;
+    let mut then: BTreeMap<String, String> = BTreeMap::new();
+    for kind in [FileKind::Weather, FileKind::Shadow] {
+        then.extend(store.known_files(kind)?.into_iter().map(|(path, file)| (path, file.reading_key)));
+    }
     let stale = |what: String| Some(Stale { what, remedy: "shade" });
     if then.is_empty() {
         return Ok(stale("there are no samples yet".to_owned()));
@@ -48,6 +52,9 @@ pub(crate) fn samples(inputs: &Inputs, store: &mut Store) -> Result<Option<Stale
 
 /// The optima against study and samples: `None` where they are fresh.
 pub(crate) fn optima(study: &Study, store: &mut Store) -> Result<Option<Stale>, PipelineError> {
+    if store.stage(SOLVE)?.is_some_and(|record| Some(record.key) == solve_key(study, store).ok()) {
+        return Ok(None);
+    }
     let stale = |what: String| Some(Stale { what, remedy: "solve" });
     let grid = store.grid()?;
     if grid.designs != study.design_rows || grid.windows != study.grid.windows() {
@@ -60,4 +67,30 @@ pub(crate) fn optima(study: &Study, store: &mut Store) -> Result<Option<Stale>, 
         0 => Ok(None),
         open => Ok(stale(format!("the optima are stale: {open} samples have none, or not all"))),
     }
+}
+
+/// Names of stages in their records.
+pub(crate) const SOLVE: &str = "solve";
+pub(crate) const SIMULATE: &str = "simulate";
+pub(crate) const REPORT: &str = "report";
+
+/// Key of all optima of a study: samples, designs and windows in their order.
+pub(crate) fn solve_key(study: &Study, store: &mut Store) -> Result<String, PipelineError> {
+    let mut parts: Vec<String> = study.design_rows.iter().map(|d| format!("{} {}", d.name, d.design_key)).collect();
+    parts.extend(study.grid.windows().iter().map(|w| format!("{} {}", w.pmv_min(), w.pmv_max())));
+    parts.extend(store.sample_keys()?.into_iter().map(|(id, key)| format!("{id} {key}")));
+    Ok(keys::hash(&parts.iter().map(String::as_str).collect::<Vec<_>>()))
+}
+
+/// Key of all simulations of a study: its optima, weather and shade, the windows that are simulated, how the bus behaves.
+pub(crate) fn simulate_key(study: &Study, inputs: &Inputs, store: &mut Store) -> Result<String, PipelineError> {
+    let dynamics = format!("{:?} {SIMULATION_VERSION} {:?}", study.dynamics, study.simulated_windows);
+    let files: Vec<String> = inputs.keys(store)?.into_values().collect();
+    Ok(keys::hash(&[&solve_key(study, store)?, &files.join(" "), &dynamics]))
+}
+
+/// Key of the report of a study: all that the database holds of it, and the program.
+pub(crate) fn report_key(study: &Study, inputs: &Inputs, store: &mut Store) -> Result<String, PipelineError> {
+    let simulations = simulate_key(study, inputs, store)?;
+    Ok(keys::hash(&[&study.hash, &simulations, &input_hash(store)?, PROGRAM_VERSION]))
 }

@@ -1,7 +1,7 @@
 //! Missions into the database; one whose content is known is not parsed again.
 
 use ingest::mission::{self, MissionReading, MissionSource};
-use ingest::{FileKind, FileRecord, Finding, FindingKind};
+use ingest::{FileKind, FileReader, FileRecord, FileStamp, Finding, FindingKind};
 use std::collections::BTreeMap;
 use store::Store;
 use study::{Study, keys};
@@ -21,33 +21,46 @@ struct Read {
 }
 
 enum Outcome {
-    Known,
+    /// Its content is as it was; with a stamp where it had to be read to know.
+    Known(Option<FileStamp>),
     New(Box<MissionReading>, String),
     Unreadable(Box<FileRecord>),
 }
 
-pub(crate) fn ingest(study: &Study, store: &mut Store, progress: &dyn Progress) -> Result<(), PipelineError> {
+pub(crate) fn ingest(
+    study: &Study,
+    inputs: &Inputs,
+    store: &mut Store,
+    progress: &dyn Progress,
+) -> Result<(), PipelineError> {
     let found = mission::discover(&study.base, &study.missions_path, &study.buses)?;
     let overlapping: BTreeMap<usize, FileRecord> = mission::overlaps(&found.missions).into_iter().collect();
-    let known = store.reading_keys(FileKind::Mission)?;
+    let known = store.known_files(FileKind::Mission)?;
     let wanted: Vec<&MissionSource> =
         found.missions.iter().enumerate().filter(|(i, _)| !overlapping.contains_key(i)).map(|(_, m)| m).collect();
 
+    let rehash = inputs.rehash();
     progress.begin("missions", wanted.len() as u64);
-    let read = |buffer: &mut Vec<u8>, source: &&MissionSource| {
+    let read = |reader: &mut FileReader, source: &&MissionSource| {
         let path = source.path.clone();
-        let content = match source.load(std::mem::take(buffer)) {
+        let of_before = known.get(&path);
+        if let Some(file) = of_before.filter(|f| !rehash && f.stamp.is_some() && f.stamp == source.stamp())
+            && file.reading_key == keys::mission_key(study, &file.blake3)
+        {
+            return Read { path, blake3: file.blake3.clone(), outcome: Outcome::Known(None) };
+        }
+        let content = match source.load(reader) {
             Ok(content) => content,
-            Err(record) => return Read { path, blake3: String::new(), outcome: Outcome::Unreadable(Box::new(record)) },
+            Err(record) => return Read { path, blake3: String::new(), outcome: Outcome::Unreadable(record) },
         };
         let key = keys::mission_key(study, &content.blake3);
-        let outcome = if known.get(&path) == Some(&key) {
-            Outcome::Known
+        let outcome = if of_before.is_some_and(|f| f.reading_key == key) {
+            Outcome::Known(content.stamp)
         } else {
             Outcome::New(Box::new(mission::read(source, &content, &study.missions)), key)
         };
         let blake3 = content.blake3.clone();
-        *buffer = content.bytes;
+        reader.recycle(content);
         Read { path, blake3, outcome }
     };
     // The first path of every content.
@@ -69,9 +82,13 @@ pub(crate) fn ingest(study: &Study, store: &mut Store, progress: &dyn Progress) 
                 store.put_file(&record, &refusal_key(&record))?;
             }
             (outcome, None) => {
-                if let Outcome::New(reading, key) = outcome {
-                    store.put_mission(&reading, &key)?;
-                    read_now += 1;
+                match outcome {
+                    Outcome::New(reading, key) => {
+                        store.put_mission(&reading, &key)?;
+                        read_now += 1;
+                    }
+                    Outcome::Known(Some(stamp)) => store.put_stamp(&path, &stamp)?,
+                    Outcome::Known(None) | Outcome::Unreadable(_) => {}
                 }
                 contents.insert(blake3, path);
             }

@@ -1,9 +1,11 @@
 //! The inputs of a run besides missions, each read once.
 
 use ingest::weather::{self, Weather};
-use ingest::{Content, FileKind, FileRecord, Finding};
+use ingest::{Content, FileKind, FileRecord, FileStamp, Finding};
 use shading::ShadowYear;
 use std::cell::OnceCell;
+use std::collections::BTreeMap;
+use store::Store;
 use study::{Study, keys};
 
 use crate::PipelineError;
@@ -12,15 +14,17 @@ use crate::PipelineError;
 #[derive(Debug)]
 pub struct Inputs<'s> {
     study: &'s Study,
+    rehash: bool,
     weather: OnceCell<(Weather, Vec<FileRecord>)>,
     shadow: OnceCell<(ShadowYear, FileRecord)>,
 }
 
 impl<'s> Inputs<'s> {
-    /// The inputs that a study names; nothing is read yet.
+    /// The inputs that a study names; nothing is read yet. With `rehash` a file is not believed to be as it was because its
+    /// size, time and inode are.
     #[must_use]
-    pub fn new(study: &'s Study) -> Self {
-        Self { study, weather: OnceCell::new(), shadow: OnceCell::new() }
+    pub fn new(study: &'s Study, rehash: bool) -> Self {
+        Self { study, rehash, weather: OnceCell::new(), shadow: OnceCell::new() }
     }
 
     /// The weather, with what there is to say of its files.
@@ -47,6 +51,37 @@ impl<'s> Inputs<'s> {
         }
         let read = read_shadow(self.study)?;
         Ok(self.shadow.get_or_init(|| read))
+    }
+
+    /// Whether all files are read, however they look.
+    pub(crate) fn rehash(&self) -> bool {
+        self.rehash
+    }
+
+    /// The reading keys of all files that samples are joined with. Files that look as they did when they were stored are not
+    /// read for it.
+    pub(crate) fn keys(&self, store: &mut Store) -> Result<BTreeMap<String, String>, PipelineError> {
+        if self.weather.get().is_none()
+            && !self.rehash
+            && let Some(keys) = self.unchanged(store)?
+        {
+            return Ok(keys);
+        }
+        Ok(self.records()?.into_iter().map(|(record, key)| (record.path, key)).collect())
+    }
+
+    fn unchanged(&self, store: &mut Store) -> Result<Option<BTreeMap<String, String>>, PipelineError> {
+        let s = self.study;
+        let mut files = weather::discover(&s.base, &s.weather_path, &s.weather.format)?;
+        files.push((s.shadow_path.clone(), s.base.join(&s.shadow_path)));
+        let mut known = store.known_files(FileKind::Weather)?;
+        known.append(&mut store.known_files(FileKind::Shadow)?);
+        let key = |(label, path): (String, &std::path::Path)| {
+            let file = known.get(&label)?;
+            let same = file.stamp.is_some() && file.stamp == FileStamp::of(path);
+            same.then(|| (label, keys::surroundings_key(s, &file.blake3)))
+        };
+        Ok(files.iter().map(|(label, path)| key((label.clone(), path.as_path()))).collect())
     }
 
     /// The records of all files that samples are joined with, each with its reading key.
@@ -79,6 +114,7 @@ fn read_shadow(study: &Study) -> Result<(ShadowYear, FileRecord), PipelineError>
         path: study.shadow_path.clone(),
         kind: FileKind::Shadow,
         bytes: content.bytes.len() as u64,
+        stamp: content.stamp,
         blake3: content.blake3,
         rows: shadow.hourly().len() as u64,
         first: None,

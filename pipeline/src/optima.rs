@@ -4,12 +4,20 @@ use cabin::{Disturbances, Optimum};
 use ingest::sample::Sample;
 use solve::nlp::{DoorLaw, Effort, Surrogate, VoteForm, nlp_blocks};
 use solve::{Method, solve_blocks};
-use store::{Store, StoredGrid};
+use store::{StageRecord, Store, StoredGrid};
 use study::Study;
 
+use crate::freshness::{self, SOLVE};
 use crate::{PipelineError, Progress};
 
 pub(crate) fn solve(study: &Study, store: &mut Store, progress: &dyn Progress) -> Result<(), PipelineError> {
+    let key = freshness::solve_key(study, store)?;
+    let points = study.grid.points();
+    if store.stage(SOLVE)?.is_some_and(|record| record.key == key) {
+        progress.info(&format!("0 points computed now (0 samples × {points})"));
+        return Ok(());
+    }
+    store.reopen_stage(SOLVE)?;
     let grid = store.put_grid(&study.design_rows, study.grid.windows())?.grid;
     let complete = store.complete_samples(study.grid.points())?;
     let missing: Vec<Sample> = store.samples()?.into_iter().filter(|s| !complete.contains(&s.id)).collect();
@@ -17,19 +25,21 @@ pub(crate) fn solve(study: &Study, store: &mut Store, progress: &dyn Progress) -
 
     progress.begin("samples", missing.len() as u64);
     let mut writer = Writer { store, grid: &grid, missing: &missing, progress, total: Total::default(), end: Ok(()) };
-    let (vehicle, points) = (&study.vehicle, &study.grid);
+    let (vehicle, wanted) = (&study.vehicle, &study.grid);
     match vote_form(study) {
-        None => solve_blocks(vehicle, points, &inputs, |first, optima| {
+        None => solve_blocks(vehicle, wanted, &inputs, |first, optima| {
             writer.write(first, optima.iter().map(|o| (o, None)))
         }),
-        Some(form) => nlp_blocks(vehicle, points, &inputs, &form, DoorLaw::Smooth, |first, results| {
+        Some(form) => nlp_blocks(vehicle, wanted, &inputs, &form, DoorLaw::Smooth, |first, results| {
             writer.write(first, results.iter().map(|(o, effort)| (o, Some(*effort))))
         }),
     };
     progress.end();
     let Writer { total, end, .. } = writer;
     end?;
-    let points = study.grid.points();
+    let counts = store.status_counts()?;
+    let result = serde_json::json!([counts.solved, counts.infeasible, counts.not_converged]).to_string();
+    store.complete_stage(SOLVE, &StageRecord { key, result })?;
     progress.info(&format!("{} points computed now ({} samples × {points})", missing.len() * points, missing.len()));
     if total.programs > 0 {
         progress.info(&format!(

@@ -1,16 +1,46 @@
 //! The report: rows of the database onto the disk. No input is read.
 
 use report::StudyReport;
-use store::Store;
+use serde::{Deserialize, Serialize};
+use store::{StageRecord, Store};
 use study::Study;
 use study::assumptions::assumptions;
 
 use crate::files::{make_folder, write_whole};
+use crate::freshness::{self, REPORT};
 use crate::record::input_hash;
-use crate::{Inputs, PROGRAM_VERSION, PipelineError, Progress, freshness};
+use crate::{Inputs, PROGRAM_VERSION, PipelineError, Progress};
+
+/// What a report that was written came to: its files with their hashes, and the study's findings in a few lines.
+#[derive(Serialize, Deserialize)]
+struct Written {
+    files: Vec<(String, String)>,
+    headline: Vec<String>,
+}
+
+/// Writes the report, unless the one that is there is of the same rows, and returns what the study found, in a few lines.
+pub(crate) fn renew(study: &Study, inputs: &Inputs, store: &mut Store) -> Result<Vec<String>, PipelineError> {
+    let key = freshness::report_key(study, inputs, store)?;
+    if let Some(record) = store.stage(REPORT)?.filter(|record| record.key == key)
+        && let Ok(written) = serde_json::from_str::<Written>(&record.result)
+        && written.files.iter().all(|(name, hash)| {
+            std::fs::read(study.report_dir.join(name)).is_ok_and(|b| blake3::hash(&b).to_hex().as_str() == hash)
+        })
+    {
+        return Ok(written.headline);
+    }
+    let written = write(study, store)?;
+    let result = serde_json::to_string(&written).expect("names, hashes and lines become JSON");
+    store.complete_stage(REPORT, &StageRecord { key, result })?;
+    Ok(written.headline)
+}
 
 /// Writes the report and returns what the study found, in a few lines.
 pub(crate) fn report(study: &Study, store: &mut Store) -> Result<Vec<String>, PipelineError> {
+    Ok(write(study, store)?.headline)
+}
+
+fn write(study: &Study, store: &mut Store) -> Result<Written, PipelineError> {
     let content = StudyReport {
         name: study.name.clone(),
         note: study.note.clone(),
@@ -35,10 +65,12 @@ pub(crate) fn report(study: &Study, store: &mut Store) -> Result<Vec<String>, Pi
     };
     let files = report::render(&content)?;
     make_folder(&study.report_dir)?;
+    let mut written = Written { files: Vec::new(), headline: report::headline(&content) };
     for file in files {
         write_whole(&study.report_dir.join(file.name), &file.bytes)?;
+        written.files.push((file.name.to_owned(), blake3::hash(&file.bytes).to_hex().to_string()));
     }
-    Ok(report::headline(&content))
+    Ok(written)
 }
 
 /// Says where the report is of something else than the inputs as they are now. Inputs that are gone say nothing.
@@ -48,7 +80,7 @@ pub(crate) fn say_stale(
     store: &mut Store,
     progress: &dyn Progress,
 ) -> Result<(), PipelineError> {
-    let samples = match inputs.records() {
+    let samples = match inputs.keys(store) {
         Ok(_) => freshness::samples(inputs, store)?,
         Err(_) => None,
     };

@@ -38,23 +38,24 @@ pub struct Done {
     pub headline: Vec<String>,
 }
 
-/// Runs stages on a study's database, and records the run in it. What is said of refused files goes to `progress` before an
+/// Runs stages on a study's database, and records the run in it. Files that look as they did when they were stored are not
+/// read again, unless `rehash` asks for it. What is said of refused files goes to `progress` before an
 /// error is returned, since a refusal may be why nothing could be done.
 ///
 /// # Errors
 /// [`PipelineError`]; what is stored by then stays, and the next run goes on from there.
-pub fn run(study: &Study, stages: &[Stage], progress: &dyn Progress) -> Result<Done, PipelineError> {
+pub fn run(study: &Study, stages: &[Stage], rehash: bool, progress: &dyn Progress) -> Result<Done, PipelineError> {
     let only_report = stages == [Stage::Report];
     let mut store = if only_report { Store::open_read_only(&study.database)? } else { open(study)? };
     let study = &as_solved(study, stages, &mut store)?;
-    let inputs = Inputs::new(study);
+    let inputs = Inputs::new(study, rehash);
     let run_id = if only_report { None } else { Some(store.start_run(now(), PROGRAM_VERSION, &study.hash)?) };
     let mut headline = Vec::new();
     let outcome = stages.iter().try_for_each(|stage| match stage {
         Stage::Ingest => {
-            ingest::ingest(study, &mut store, progress)?;
+            ingest::ingest(study, &inputs, &mut store, progress)?;
             // Weather that cannot be used is said before anything is computed.
-            inputs.records()?;
+            inputs.keys(&mut store)?;
             if stages.contains(&Stage::Shade) { Ok(()) } else { ingest::say_stale(&inputs, &mut store, progress) }
         }
         Stage::Shade => samples::join(study, &inputs, &mut store, progress),
@@ -64,10 +65,13 @@ pub fn run(study: &Study, stages: &[Stage], progress: &dyn Progress) -> Result<D
         },
         Stage::Simulate => simulations::simulate(study, &inputs, &mut store, progress),
         Stage::Report => {
-            if only_report {
+            let lines = if only_report {
                 report::say_stale(study, &inputs, &mut store, progress)?;
-            }
-            report::report(study, &mut store).map(|lines| headline = lines)
+                report::report(study, &mut store)
+            } else {
+                report::renew(study, &inputs, &mut store)
+            };
+            lines.map(|lines| headline = lines)
         }
     });
     let summary = Summary::of(study, &mut store)?;

@@ -4,7 +4,7 @@ use ingest::sample::Surroundings;
 use store::Store;
 use study::Study;
 
-use crate::{Inputs, PipelineError, Progress};
+use crate::{Inputs, PipelineError, Progress, freshness};
 
 pub(crate) fn join(
     study: &Study,
@@ -12,6 +12,12 @@ pub(crate) fn join(
     store: &mut Store,
     progress: &dyn Progress,
 ) -> Result<(), PipelineError> {
+    if !inputs.rehash() && freshness::samples(inputs, store)?.is_none() {
+        let samples: u64 = store.months()?.iter().map(|m| m.sample_count).sum();
+        let excluded: u64 = store.exclusion_counts()?.iter().map(|e| e.count).sum();
+        progress.info(&format!("{samples} samples: 0 new or changed, 0 withdrawn; {excluded} segments excluded"));
+        return Ok(());
+    }
     let (weather, _) = inputs.weather()?;
     let (shadow, _) = inputs.shadow()?;
     let surroundings = Surroundings { weather, shadow, site: &study.site, zone: study.zone };
@@ -22,11 +28,12 @@ pub(crate) fn join(
             Err(segment) => excluded.push(segment),
         }
     }
-    let (changed, withdrawn) = store.put_samples(&samples, &excluded, &inputs.records()?)?;
     if samples.is_empty() {
+        // What the database holds stays: inputs that give nothing at all are more likely broken than meant.
         let reason = excluded.first().map_or_else(|| "there are no segments".to_owned(), |e| e.reason.clone());
         return Err(PipelineError::NoSamples { excluded: excluded.len(), reason });
     }
+    let (changed, withdrawn) = store.put_samples(&samples, &excluded, &inputs.records()?)?;
     progress.info(&format!(
         "{} samples: {changed} new or changed, {withdrawn} withdrawn; {} segments excluded",
         samples.len(),

@@ -5,13 +5,14 @@ use ingest::sample::Sample;
 use rayon::prelude::*;
 use simulate::{Replay, SIMULATION_VERSION};
 use std::collections::BTreeMap;
-use store::{SimulationId, SimulationRow, Store};
+use store::{SimulationId, SimulationRow, StageRecord, Store};
 use study::{Study, keys};
 
 use crate::bench::{Bench, optima};
+use crate::freshness::{self, SIMULATE};
 use crate::missions::{MissionInTime, WeatherAndShade, missions};
 use crate::record::input_hash;
-use crate::{Inputs, PipelineError, Progress, freshness, traces};
+use crate::{Inputs, PipelineError, Progress, traces};
 
 /// Missions between two transactions, per thread.
 const MISSIONS_A_THREAD: usize = 4;
@@ -42,6 +43,12 @@ pub(crate) fn simulate(
     if let Some(stale) = freshness::optima(study, store)? {
         return Err(stale.into());
     }
+    let key = freshness::simulate_key(study, inputs, store)?;
+    if let Some(record) = store.stage(SIMULATE)?.filter(|record| record.key == key) {
+        progress.info(&told(study, 0, record.result.parse().unwrap_or(0), 0));
+        return Ok(());
+    }
+    store.reopen_stage(SIMULATE)?;
     let bench = Bench {
         study,
         grid: store.grid()?,
@@ -79,16 +86,19 @@ pub(crate) fn simulate(
     }
     progress.end();
     traces::trace(&bench, store, &wanted)?;
-    progress.info(&format!(
-        "{simulated} missions simulated now ({} missions × {} designs × {} windows × {} ways to run the bus); {} no longer \
-         valid",
-        bench.missions.len(),
+    progress.info(&told(study, simulated, bench.missions.len(), stale.len()));
+    store.complete_stage(SIMULATE, &StageRecord { key, result: bench.missions.len().to_string() })?;
+    Ok(())
+}
+
+fn told(study: &Study, simulated: usize, missions: usize, stale: usize) -> String {
+    format!(
+        "{simulated} missions simulated now ({missions} missions × {} designs × {} windows × {} ways to run the bus); {stale} no \
+         longer valid",
         study.grid.designs().len(),
         study.simulated_windows.len(),
         Replay::ALL.len(),
-        stale.len()
-    ));
-    Ok(())
+    )
 }
 
 impl Bench<'_> {

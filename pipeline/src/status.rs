@@ -3,10 +3,11 @@
 use chrono::{DateTime, SecondsFormat, Utc};
 use ingest::FileRecord;
 use serde::Serialize;
-use store::{Counts, RunRow, Store};
+use store::{Counts, RunRow, StatusCounts, Store};
 use study::Study;
 
 use crate::PipelineError;
+use crate::freshness::SOLVE;
 
 /// What the database holds of a study, in short.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -23,7 +24,7 @@ pub struct Summary {
 
 impl Summary {
     pub(crate) fn of(study: &Study, store: &mut Store) -> Result<Self, PipelineError> {
-        let status = store.status_counts()?;
+        let status = status_counts(store)?;
         let samples: u64 = store.months()?.iter().map(|m| m.sample_count).sum();
         let refused = store.files()?.iter().filter(|f| !f.accepted).map(refusal).collect();
         let counts = Counts {
@@ -44,6 +45,16 @@ impl Summary {
     pub fn is_complete(&self) -> bool {
         self.counts.failed == 0 && self.refused.is_empty() && self.unsimulated == 0
     }
+}
+
+/// The points by status, as `solve` counted them when it was last complete, or counted now.
+fn status_counts(store: &mut Store) -> Result<StatusCounts, PipelineError> {
+    let record = store.stage(SOLVE)?;
+    let counted: Option<[u64; 3]> = record.and_then(|r| serde_json::from_str(&r.result).ok());
+    if let Some([solved, infeasible, not_converged]) = counted {
+        return Ok(StatusCounts { solved, infeasible, not_converged });
+    }
+    Ok(store.status_counts()?)
 }
 
 /// A refused file: path, line, column and reason.
@@ -122,7 +133,7 @@ impl From<RunRow> for LastRun {
 pub fn status(study: &Study) -> Result<Status, PipelineError> {
     let mut store = Store::open_read_only(&study.database)?;
     let summary = Summary::of(study, &mut store)?;
-    let counts = store.status_counts()?;
+    let counts = status_counts(&mut store)?;
     let months = store.months()?;
     let grid = store.grid()?;
     let status = Status {

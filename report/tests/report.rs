@@ -150,6 +150,7 @@ fn prop_text_from_outside_breaks_neither_tables_nor_spreadsheets() {
         rows: 1,
         first: None,
         last: None,
+        stamp: None,
         accepted,
         findings,
     };

@@ -61,6 +61,7 @@ fn solve_and_commit(bencher: Bencher) {
             rows: 0,
             first: None,
             last: None,
+            stamp: None,
             accepted: true,
             findings: Vec::new(),
         };

@@ -1,26 +1,53 @@
 //! Input files, and what was noticed in them.
 
-use ingest::{FileKind, FileRecord, Finding, FindingKind};
-use sqlx::sqlite::SqliteConnection;
+use ingest::{FileKind, FileRecord, FileStamp, Finding, FindingKind};
+use sqlx::sqlite::{SqliteConnection, SqliteRow};
 use sqlx::{Connection, Row};
 use std::collections::BTreeMap;
 
 use crate::row::{Insert, count, optional_time, time_text, word};
 use crate::{Store, StoreError};
 
-/// What the readings of the stored files were made from, by path.
-pub type ReadingKeys = BTreeMap<String, String>;
+/// A file that the database holds.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct KnownFile {
+    /// What its reading was made from.
+    pub reading_key: String,
+    /// BLAKE3 of its content; empty where it was never read.
+    pub blake3: String,
+    /// How it looked then.
+    pub stamp: Option<FileStamp>,
+}
 
 impl Store {
-    /// The reading keys of the files of a kind.
+    /// The files of a kind by path.
     ///
     /// # Errors
     /// [`StoreError::Statement`].
-    pub fn reading_keys(&mut self, kind: FileKind) -> Result<ReadingKeys, StoreError> {
+    pub fn known_files(&mut self, kind: FileKind) -> Result<BTreeMap<String, KnownFile>, StoreError> {
         self.drive(async |c| {
-            let sql = "SELECT path, reading_key FROM source_file WHERE kind = ? ORDER BY path";
+            let sql = "SELECT f.path, f.reading_key, f.blake3, s.bytes, s.modified_ns, s.inode
+                FROM source_file AS f LEFT JOIN file_stamp AS s USING (source_file_id)
+                WHERE f.kind = ? ORDER BY f.path";
             let rows = sqlx::query(sql).bind(kind.name()).fetch_all(c).await?;
-            rows.iter().map(|r| Ok((r.try_get("path")?, r.try_get("reading_key")?))).collect()
+            rows.iter()
+                .map(|r| {
+                    let (reading_key, blake3) = (r.try_get("reading_key")?, r.try_get("blake3")?);
+                    Ok((r.try_get("path")?, KnownFile { reading_key, blake3, stamp: stamp(r)? }))
+                })
+                .collect()
+        })
+    }
+
+    /// Records how a file looks now, whose content is as it was.
+    ///
+    /// # Errors
+    /// [`StoreError::Statement`].
+    pub fn put_stamp(&mut self, path: &str, stamp: &FileStamp) -> Result<(), StoreError> {
+        self.drive(async |c| {
+            let sql = "SELECT source_file_id FROM source_file WHERE path = ?";
+            let Some(row) = sqlx::query(sql).bind(path).fetch_optional(&mut *c).await? else { return Ok(()) };
+            insert_stamp(c, row.try_get("source_file_id")?, stamp).await
         })
     }
 
@@ -42,7 +69,7 @@ impl Store {
     /// # Errors
     /// [`StoreError::Statement`].
     pub fn keep_files(&mut self, kind: FileKind, paths: &[String]) -> Result<u64, StoreError> {
-        let known = self.reading_keys(kind)?;
+        let known = self.known_files(kind)?;
         self.drive(async |c| {
             let mut tx = c.begin().await?;
             let forgotten = forget_others(&mut tx, known.keys(), paths).await?;
@@ -70,8 +97,9 @@ impl Store {
                     message: r.try_get("message")?,
                 });
             }
-            let sql = "SELECT source_file_id, path, kind, blake3, bytes, rows, first_utc, last_utc,
-                outcome = 'accepted' AS accepted FROM source_file ORDER BY kind, path";
+            let sql = "SELECT f.source_file_id, f.path, f.kind, f.blake3, f.bytes AS content_bytes, f.rows, f.first_utc, f.last_utc,
+                    f.outcome = 'accepted' AS accepted, s.bytes, s.modified_ns, s.inode
+                FROM source_file AS f LEFT JOIN file_stamp AS s USING (source_file_id) ORDER BY f.kind, f.path";
             let rows = sqlx::query(sql).fetch_all(c).await?;
             rows.iter()
                 .map(|r| {
@@ -79,10 +107,11 @@ impl Store {
                         path: r.try_get("path")?,
                         kind: word(r, "kind", FileKind::from_name)?,
                         blake3: r.try_get("blake3")?,
-                        bytes: count(r, "bytes")?,
+                        bytes: count(r, "content_bytes")?,
                         rows: count(r, "rows")?,
                         first: optional_time(r, "first_utc")?,
                         last: optional_time(r, "last_utc")?,
+                        stamp: stamp(r)?,
                         accepted: r.try_get("accepted")?,
                         findings: findings.remove(&r.try_get("source_file_id")?).unwrap_or_default(),
                     })
@@ -125,6 +154,10 @@ pub(crate) async fn replace_file(
         .fetch_one(&mut *c)
         .await?
         .try_get("source_file_id")?;
+    sqlx::query("DELETE FROM file_stamp WHERE source_file_id = ?").bind(id).execute(&mut *c).await?;
+    if let Some(stamp) = &file.stamp {
+        insert_stamp(c, id, stamp).await?;
+    }
     sqlx::query("DELETE FROM data_quality WHERE source_file_id = ?").bind(id).execute(&mut *c).await?;
     sqlx::query("DELETE FROM mission_segment WHERE source_file_id = ?").bind(id).execute(&mut *c).await?;
     for (position, finding) in file.findings.iter().enumerate() {
@@ -153,4 +186,21 @@ pub(crate) async fn forget_others<'p>(
         forgotten += 1;
     }
     Ok(forgotten)
+}
+
+async fn insert_stamp(c: &mut SqliteConnection, file: i64, stamp: &FileStamp) -> Result<(), StoreError> {
+    Insert::replacing("file_stamp")
+        .set("source_file_id", file)?
+        .set("bytes", stamp.bytes.cast_signed())?
+        .set("modified_ns", stamp.modified_ns)?
+        .set("inode", stamp.inode.cast_signed())?
+        .execute(c)
+        .await?;
+    Ok(())
+}
+
+fn stamp(r: &SqliteRow) -> Result<Option<FileStamp>, sqlx::Error> {
+    let Some(bytes) = r.try_get::<Option<i64>, _>("bytes")? else { return Ok(None) };
+    let (bytes, inode) = (bytes.cast_unsigned(), count(r, "inode")?);
+    Ok(Some(FileStamp { bytes, modified_ns: r.try_get("modified_ns")?, inode }))
 }

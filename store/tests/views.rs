@@ -9,7 +9,7 @@ use cabin::{
 use chrono::{DateTime, TimeDelta, Utc};
 use ingest::mission::{MissionReading, Segment};
 use ingest::sample::Sample;
-use ingest::{ExcludedSegment, FileKind, FileRecord, Finding, FindingKind};
+use ingest::{ExcludedSegment, FileKind, FileRecord, FileStamp, Finding, FindingKind};
 use proptest::prelude::*;
 use solve::Method;
 use store::{Counts, DesignRow, RunEnd, Store, StoreError};
@@ -38,6 +38,7 @@ fn file(path: &str, kind: FileKind) -> FileRecord {
         rows: 3600,
         first: Some(start()),
         last: None,
+        stamp: Some(FileStamp { bytes: 10, modified_ns: 1_700_000_000_000_000_000, inode: 7 }),
         accepted: true,
         findings: vec![Finding {
             kind: FindingKind::TimeGap,
@@ -245,7 +246,7 @@ fn prop_samples_become_exactly_those_given_and_equal_ones_keep_their_optima() {
     let mut samples = store.samples().unwrap();
     assert_eq!(samples, [sample(1, "a", 1), sample(2, "a", 1), sample(3, "b", 1), sample(4, "b", 7)]);
     assert_eq!(store.put_samples(&samples, &[], &[]).unwrap(), (0, 0));
-    assert!(store.reading_keys(FileKind::Weather).unwrap().is_empty(), "the samples are joined with no file now");
+    assert!(store.known_files(FileKind::Weather).unwrap().is_empty(), "the samples are joined with no file now");
     // Made from something else that gives the same values: the optima stay, the key is new.
     "other".clone_into(&mut samples[1].key);
     assert_eq!(store.put_samples(&samples, &[], &[]).unwrap(), (0, 0));
@@ -283,7 +284,8 @@ fn prop_text_survives_whatever_it_holds() {
     let hostile = file("x'; DROP TABLE source_file; --\n\"<script>", FileKind::Mission);
     store.put_file(&hostile, "k").unwrap();
     assert_eq!(store.files().unwrap(), std::slice::from_ref(&hostile));
-    assert_eq!(store.reading_keys(FileKind::Mission).unwrap()[&hostile.path], "k");
+    let known = store.known_files(FileKind::Mission).unwrap().remove(&hostile.path).unwrap();
+    assert_eq!((known.reading_key.as_str(), known.stamp), ("k", hostile.stamp));
 }
 
 proptest! {

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use crate::files::{extension, label, list, open_archive};
-use crate::{Content, FileKind, FileRecord, Finding, FindingKind, IngestError};
+use crate::{Content, FileKind, FileReader, FileRecord, FileStamp, Finding, FindingKind, IngestError};
 
 /// No mission is longer; a name that says so is a misprint.
 const MAX_DURATION: TimeDelta = TimeDelta::days(7);
@@ -163,16 +163,24 @@ fn parse_name(stem: &str) -> Result<(u32, DateTime<Utc>, DateTime<Utc>), String>
 }
 
 impl MissionSource {
-    /// Reads the bytes into a buffer, which may be that of a mission that is done with.
+    /// Reads the bytes.
     ///
     /// # Errors
     /// The record of a refused file.
-    pub fn load(&self, buffer: Vec<u8>) -> Result<Content, FileRecord> {
+    pub fn load(&self, reader: &mut FileReader) -> Result<Content, Box<FileRecord>> {
         let content = match &self.place {
-            Place::File(path) => Content::read_into(path, buffer),
-            Place::Entry { archive, index } => Content::read_entry(archive, *index, buffer),
+            Place::File(path) => reader.read(path),
+            Place::Entry { archive, index } => reader.read_entry(archive, *index),
         };
-        content.map_err(|finding| FileRecord::refused(&self.path, FileKind::Mission, "", 0, finding))
+        content.map_err(|finding| Box::new(FileRecord::refused(&self.path, FileKind::Mission, "", 0, finding)))
+    }
+
+    /// The stamp of the file, or of the archive that it lies in.
+    #[must_use]
+    pub fn stamp(&self) -> Option<FileStamp> {
+        match &self.place {
+            Place::File(path) | Place::Entry { archive: path, .. } => FileStamp::of(path),
+        }
     }
 }
 

@@ -73,7 +73,8 @@ pub struct MissionReading {
 pub fn read(source: &MissionSource, content: &Content, options: &MissionOptions) -> MissionReading {
     let bytes = content.bytes.len() as u64;
     let refused = |finding| MissionReading {
-        file: FileRecord::refused(&source.path, FileKind::Mission, &content.blake3, bytes, finding),
+        file: FileRecord::refused(&source.path, FileKind::Mission, &content.blake3, bytes, finding)
+            .stamped(content.stamp),
         segments: Vec::new(),
         excluded: Vec::new(),
         loads: Vec::new(),
@@ -115,6 +116,7 @@ pub fn read(source: &MissionSource, content: &Content, options: &MissionOptions)
         rows: telemetry.len() as u64,
         first: time(first_s),
         last: time(last_s),
+        stamp: content.stamp,
         accepted: true,
         findings,
     };

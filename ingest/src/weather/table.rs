@@ -49,12 +49,16 @@ pub(crate) fn read_file(label: &str, path: &Path, format: &dyn Format) -> (Optio
                 rows,
                 first: time(table.rows.iter().map(|r| r.start_s).min()),
                 last: time(table.rows.iter().map(|r| r.start_s + table.interval_s).max()),
+                stamp: content.stamp,
                 accepted: true,
                 findings,
             };
             (Some(table), record)
         }
-        Err(finding) => (None, FileRecord::refused(label, FileKind::Weather, &content.blake3, bytes, finding)),
+        Err(finding) => {
+            let record = FileRecord::refused(label, FileKind::Weather, &content.blake3, bytes, finding);
+            (None, record.stamped(content.stamp))
+        }
     }
 }
 

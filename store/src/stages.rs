@@ -1,0 +1,62 @@
+//! For which inputs each stage was last completed.
+
+use sqlx::Row;
+
+use crate::row::Insert;
+use crate::{Store, StoreError};
+
+/// A stage as it was last completed, nothing of which has been withdrawn since.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct StageRecord {
+    /// Key of its inputs.
+    pub key: String,
+    /// What it came to, in the stage's own JSON.
+    pub result: String,
+}
+
+impl Store {
+    /// The record of a stage; `None` where it is not complete.
+    ///
+    /// # Errors
+    /// [`StoreError::Statement`].
+    pub fn stage(&mut self, stage: &str) -> Result<Option<StageRecord>, StoreError> {
+        self.drive(async |c| {
+            let sql = "SELECT stage_key, result FROM stage_record WHERE stage = ?";
+            let row = sqlx::query(sql).bind(stage).fetch_optional(c).await?;
+            let record = row.map(|r| Ok(StageRecord { key: r.try_get("stage_key")?, result: r.try_get("result")? }));
+            Ok(record.transpose().map_err(|e: sqlx::Error| e)?)
+        })
+    }
+
+    /// Records that a stage is complete for the inputs of a key.
+    ///
+    /// # Errors
+    /// [`StoreError::Statement`].
+    pub fn complete_stage(&mut self, stage: &str, record: &StageRecord) -> Result<(), StoreError> {
+        self.drive(async |c| {
+            let row = Insert::replacing("stage_record").set("stage", stage)?.set("stage_key", record.key.as_str())?;
+            row.set("result", record.result.as_str())?.execute(c).await?;
+            Ok(())
+        })
+    }
+
+    /// Forgets that a stage is complete.
+    ///
+    /// # Errors
+    /// [`StoreError::Statement`].
+    pub fn reopen_stage(&mut self, stage: &str) -> Result<(), StoreError> {
+        self.drive(async |c| {
+            sqlx::query("DELETE FROM stage_record WHERE stage = ?").bind(stage).execute(c).await?;
+            Ok(())
+        })
+    }
+
+    /// The samples with what each was made from, by id.
+    ///
+    /// # Errors
+    /// [`StoreError::Statement`].
+    pub fn sample_keys(&mut self) -> Result<Vec<(i64, String)>, StoreError> {
+        let sql = "SELECT sample_id, sample_key FROM hourly_sample ORDER BY sample_id";
+        self.select(sql, |r| Ok((r.try_get("sample_id")?, r.try_get("sample_key")?)))
+    }
+}
