@@ -39,7 +39,7 @@ pub(crate) fn solve(study: &Study, store: &mut Store, progress: &dyn Progress) -
     end?;
     let counts = store.status_counts()?;
     let result = serde_json::json!([counts.solved, counts.infeasible, counts.not_converged]).to_string();
-    store.complete_stage(SOLVE, &StageRecord { key, result })?;
+    store.complete_optima(&StageRecord { key, result })?;
     progress.info(&format!("{} points computed now ({} samples × {points})", missing.len() * points, missing.len()));
     if total.programs > 0 {
         progress.info(&format!(

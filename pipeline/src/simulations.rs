@@ -87,7 +87,7 @@ pub(crate) fn simulate(
     progress.end();
     traces::trace(&bench, store, &wanted)?;
     progress.info(&told(study, simulated, bench.missions.len(), stale.len()));
-    store.complete_stage(SIMULATE, &StageRecord { key, result: bench.missions.len().to_string() })?;
+    store.complete_simulations(&StageRecord { key, result: bench.missions.len().to_string() })?;
     Ok(())
 }
 

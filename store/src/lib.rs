@@ -4,6 +4,7 @@
 //! transaction, so that a kill leaves either all of it or nothing. The schema is in `migrations/`; what analysts see are
 //! its views, described in `docs/database.md`.
 
+mod averages;
 mod connection;
 mod files;
 mod grid;

@@ -174,7 +174,7 @@ impl Store {
         })
     }
 
-    /// The view `simulation_annual`, in the order of the study.
+    /// The table `simulation_annual`, in the order of the study.
     ///
     /// # Errors
     /// [`StoreError::Statement`].
@@ -195,7 +195,7 @@ impl Store {
         })
     }
 
-    /// The view `simulation_class`, in the order of the study and of the classes.
+    /// The table `simulation_class`, in the order of the study and of the classes.
     ///
     /// # Errors
     /// [`StoreError::Statement`].

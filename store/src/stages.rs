@@ -1,6 +1,7 @@
 //! For which inputs each stage was last completed.
 
 use sqlx::Row;
+use sqlx::sqlite::SqliteConnection;
 
 use crate::row::Insert;
 use crate::{Store, StoreError};
@@ -33,11 +34,7 @@ impl Store {
     /// # Errors
     /// [`StoreError::Statement`].
     pub fn complete_stage(&mut self, stage: &str, record: &StageRecord) -> Result<(), StoreError> {
-        self.drive(async |c| {
-            let row = Insert::replacing("stage_record").set("stage", stage)?.set("stage_key", record.key.as_str())?;
-            row.set("result", record.result.as_str())?.execute(c).await?;
-            Ok(())
-        })
+        self.drive(async |c| record_stage(c, stage, record).await)
     }
 
     /// Forgets that a stage is complete.
@@ -59,4 +56,14 @@ impl Store {
         let sql = "SELECT sample_id, sample_key FROM hourly_sample ORDER BY sample_id";
         self.select(sql, |r| Ok((r.try_get("sample_id")?, r.try_get("sample_key")?)))
     }
+}
+
+pub(crate) async fn record_stage(
+    c: &mut SqliteConnection,
+    stage: &str,
+    record: &StageRecord,
+) -> Result<(), StoreError> {
+    let row = Insert::replacing("stage_record").set("stage", stage)?.set("stage_key", record.key.as_str())?;
+    row.set("result", record.result.as_str())?.execute(c).await?;
+    Ok(())
 }

@@ -102,7 +102,7 @@ pub struct OptimumRow {
 }
 
 impl Store {
-    /// The view `annual_average`, in the order of the study.
+    /// The table `annual_average`, in the order of the study.
     ///
     /// # Errors
     /// [`StoreError::Statement`].
@@ -126,13 +126,13 @@ impl Store {
         })
     }
 
-    /// The view `monthly_average`, in the order of the study and the year.
+    /// The table `monthly_average`, in the order of the study and the year.
     ///
     /// # Errors
     /// [`StoreError::Statement`].
     pub fn monthly(&mut self) -> Result<Vec<MonthlyRow>, StoreError> {
         let sql = "SELECT m.* FROM monthly_average AS m
-            JOIN hvac_design AS d USING (design_id) JOIN comfort_window AS w USING (window_id)
+            JOIN hvac_design AS d ON d.name = m.design JOIN comfort_window AS w USING (pmv_min, pmv_max)
             ORDER BY d.position, w.position, m.month";
         self.select(sql, |r| {
             Ok(MonthlyRow {

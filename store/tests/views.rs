@@ -12,7 +12,7 @@ use ingest::sample::Sample;
 use ingest::{ExcludedSegment, FileKind, FileRecord, FileStamp, Finding, FindingKind};
 use proptest::prelude::*;
 use solve::Method;
-use store::{Counts, DesignRow, RunEnd, Store, StoreError};
+use store::{Counts, DesignRow, RunEnd, StageRecord, Store, StoreError};
 use tempfile::TempDir;
 
 fn window(limit: f64) -> ComfortWindow {
@@ -164,6 +164,8 @@ fn filled(store: &mut Store) {
         }
     }
     store.put_optima(&change.grid, &[], points.iter().map(|(id, optimum)| (*id, optimum, None))).unwrap();
+    assert!(store.annual().unwrap().is_empty(), "averages show before the stage is complete");
+    store.complete_optima(&StageRecord { key: "k".to_owned(), result: "[]".to_owned() }).unwrap();
     let stored = store.optima(&change.grid, 1, 4).unwrap();
     assert_eq!(stored.len(), points.len());
     for (row, (id, optimum)) in stored.iter().zip(&points) {
@@ -276,6 +278,28 @@ fn prop_a_changed_design_alone_loses_its_optima() {
     assert_eq!(left, [["ptc", "4"]]);
     assert_eq!(store.put_grid(&[design("ptc", "x")], &[window(0.5)]).unwrap().removed, 2);
     assert_eq!(store.query_text("SELECT count(*) FROM optimum").unwrap(), [["0"]]);
+}
+
+#[test]
+fn prop_averages_are_those_of_the_last_complete_stage_and_only_changed_months_are_renewed() {
+    let (_folder, mut store) = scratch();
+    filled(&mut store);
+    let before = (store.annual().unwrap(), store.monthly().unwrap());
+    assert!(store.stage("solve").unwrap().is_some());
+    let mut samples = store.samples().unwrap();
+    samples[3].disturbances.dhi_w_m2 = 10.0;
+    assert_eq!(store.put_samples(&samples, &[], &[]).unwrap(), (1, 0));
+    // July's sample has no optima now: the stage is open, the averages are as they were.
+    assert!(store.stage("solve").unwrap().is_none());
+    assert_eq!(store.query_text("SELECT month FROM stale_month").unwrap(), [["7"]]);
+    assert_eq!((store.annual().unwrap(), store.monthly().unwrap()), before);
+    let grid = store.grid().unwrap();
+    let optima = [0, 1].map(|d| (4, solved(d, OperatingMode::Cooling, 700.0)));
+    store.put_optima(&grid, &[4], optima.iter().map(|(id, o)| (*id, o, None))).unwrap();
+    store.complete_optima(&StageRecord { key: "k2".to_owned(), result: "[]".to_owned() }).unwrap();
+    let monthly: Vec<_> = store.monthly().unwrap().iter().map(|m| m.hvac_power_w).collect();
+    assert_eq!(monthly, [2000.0, 700.0, 750.0, 700.0].map(Some));
+    assert_eq!(store.annual().unwrap()[0].hvac_power_w, Some(1350.0));
 }
 
 #[test]

@@ -1,0 +1,205 @@
+//! Averages of the last complete stage: renewed in the transaction that completes it, so that readers never see one of a
+//! half-computed study.
+
+use sqlx::Connection;
+use sqlx::sqlite::SqliteConnection;
+
+use crate::stages::{StageRecord, record_stage};
+use crate::{Store, StoreError};
+
+/// The months whose samples, designs or windows have changed.
+const MONTHLY: &str = "INSERT INTO monthly_average
+SELECT
+    d.name,
+    w.pmv_limit,
+    w.pmv_min,
+    w.pmv_max,
+    s.month,
+    avg(p.air_unit_power_w + p.radiant_heater_power_w + p.air_curtain_power_w),
+    -- Heaters and curtain count to the side on which the air unit works; alone they heat.
+    avg(CASE WHEN p.operating_mode >= 0
+        THEN p.air_unit_power_w + p.radiant_heater_power_w + p.air_curtain_power_w
+        WHEN p.operating_mode < 0 THEN 0.0 END),
+    avg(CASE WHEN p.operating_mode < 0
+        THEN p.air_unit_power_w + p.radiant_heater_power_w + p.air_curtain_power_w
+        WHEN p.operating_mode >= 0 THEN 0.0 END),
+    count(*),
+    sum(p.status <> 0),
+    -- A binding limit is met to rounding; the next state inside is many orders of magnitude away.
+    sum(p.status = 0 AND p.pmv < w.pmv_min + 1e-6),
+    sum(p.status = 0 AND p.pmv > w.pmv_max - 1e-6),
+    sum(p.status = 0 AND p.operating_mode = 1),
+    sum(p.status = 0 AND p.operating_mode = -1),
+    sum(p.status = 0 AND p.outside_standard_range),
+    coalesce((SELECT max(run_id) FROM run), 0)
+FROM hourly_sample AS s
+JOIN optimum_point AS p USING (sample_id)
+JOIN hvac_design AS d USING (design_id)
+JOIN comfort_window AS w USING (window_id)
+WHERE s.month IN (SELECT month FROM stale_month)
+GROUP BY p.design_id, p.window_id, s.month";
+
+/// From all months; a sample weighs 1/N · days/365 (paper, eq. meanPower), renormalised over the months present.
+const ANNUAL: &str = "INSERT INTO annual_average
+WITH month_days (month, days) AS (
+    VALUES (1, 31), (2, 28), (3, 31), (4, 30), (5, 31), (6, 30), (7, 31), (8, 31), (9, 30), (10, 31), (11, 30), (12, 31)
+),
+present AS (
+    SELECT month, days, CAST(days AS REAL) / sum(days) OVER () / sample_count AS sample_weight
+    FROM (SELECT month, max(sample_count) AS sample_count FROM monthly_average GROUP BY month) JOIN month_days USING (month)
+),
+annual AS (
+    SELECT
+        m.design,
+        m.pmv_limit,
+        m.pmv_min,
+        m.pmv_max,
+        sum(m.hvac_power_w * w.days) / sum(CASE WHEN m.hvac_power_w IS NOT NULL THEN w.days END) AS hvac_power_w,
+        sum(m.heating_power_w * w.days) / sum(CASE WHEN m.hvac_power_w IS NOT NULL THEN w.days END) AS heating_power_w,
+        sum(m.cooling_power_w * w.days) / sum(CASE WHEN m.hvac_power_w IS NOT NULL THEN w.days END) AS cooling_power_w,
+        sum(m.sample_count) AS sample_count,
+        sum(m.unsolved_count) AS unsolved_count,
+        sum(m.unsolved_count * w.sample_weight) AS unsolved_weight
+    FROM monthly_average AS m
+    JOIN present AS w USING (month)
+    GROUP BY m.design, m.pmv_min, m.pmv_max
+)
+SELECT
+    a.design,
+    a.pmv_limit,
+    a.pmv_min,
+    a.pmv_max,
+    a.hvac_power_w,
+    a.heating_power_w,
+    a.cooling_power_w,
+    a.sample_count,
+    a.unsolved_count,
+    a.unsolved_weight,
+    (r.hvac_power_w - a.hvac_power_w) / nullif(r.hvac_power_w, 0.0),
+    coalesce((SELECT max(run_id) FROM run), 0)
+FROM annual AS a
+LEFT JOIN annual AS r ON r.design = 'ptc' AND r.pmv_min = a.pmv_min AND r.pmv_max = a.pmv_max";
+
+const SIMULATION_ANNUAL: &str = "INSERT INTO simulation_annual
+WITH monthly AS (
+    SELECT
+        design,
+        pmv_limit,
+        pmv_min,
+        pmv_max,
+        controller,
+        month,
+        sum(mean_hvac_power_w * seconds) / sum(seconds) AS power_w,
+        sum(static_mean_hvac_power_w * seconds) / sum(seconds) AS static_power_w,
+        sum(saturated_fraction * seconds) / sum(seconds) AS saturated_fraction,
+        count(*) AS mission_count
+    FROM simulation
+    GROUP BY design, pmv_min, pmv_max, controller, month
+)
+SELECT
+    m.design,
+    m.pmv_limit,
+    m.pmv_min,
+    m.pmv_max,
+    m.controller,
+    sum(m.power_w * w.days) / sum(w.days),
+    sum(m.static_power_w * w.days) / sum(w.days),
+    sum(m.saturated_fraction * w.days) / sum(w.days),
+    sum(m.mission_count),
+    coalesce((SELECT max(run_id) FROM run), 0)
+FROM monthly AS m
+JOIN month_weight AS w USING (month)
+GROUP BY m.design, m.pmv_min, m.pmv_max, m.controller";
+
+const SIMULATION_CLASS: &str = "INSERT INTO simulation_class
+WITH classed AS (
+    SELECT
+        r.design_id,
+        r.window_id,
+        r.mean_hvac_power_w,
+        r.static_mean_hvac_power_w,
+        r.max_abs_pmv_15min,
+        r.saturated_fraction,
+        r.seconds,
+        r.month,
+        r.ambient_k - 273.15 AS ambient_temperature_c,
+        v.mean_hvac_power_w AS warm_w
+    FROM simulated_mission AS r
+    JOIN simulated_mission AS v USING (source_file_id, design_id, window_id)
+    WHERE r.controller = 'paper' AND v.controller = 'warm-start'
+),
+all_classed AS (
+    SELECT *, 0 AS sorting, 'month' AS sorted_by, month AS place, printf('%02d', month) AS class FROM classed
+    UNION ALL
+    SELECT *, 1, 'ambient temperature in °C', CAST(ambient_temperature_c / 5 + 100 AS INTEGER) - 100,
+        printf('%d … %d', 5 * (CAST(ambient_temperature_c / 5 + 100 AS INTEGER) - 100),
+            5 * (CAST(ambient_temperature_c / 5 + 100 AS INTEGER) - 99))
+    FROM classed
+    UNION ALL
+    SELECT *, 2, 'mission length in h', min(seconds / 14400, 4),
+        CASE WHEN seconds >= 57600 THEN '16 and more'
+            ELSE printf('%d … %d', 4 * (seconds / 14400), 4 * (seconds / 14400 + 1)) END
+    FROM classed
+)
+SELECT
+    d.name AS design,
+    w.pmv_limit,
+    w.pmv_min,
+    w.pmv_max,
+    a.sorted_by,
+    a.class,
+    a.sorting * 100 + a.place AS class_order,
+    count(*) AS mission_count,
+    sum(a.mean_hvac_power_w * a.seconds) / sum(a.seconds) AS mean_hvac_power_w,
+    sum(a.static_mean_hvac_power_w * a.seconds) / sum(a.seconds) AS static_mean_hvac_power_w,
+    sum(a.warm_w * a.seconds) / sum(a.seconds) AS warm_start_power_w,
+    avg(a.max_abs_pmv_15min) AS mean_max_abs_pmv_15min,
+    sum(a.saturated_fraction * a.seconds) / sum(a.seconds),
+    coalesce((SELECT max(run_id) FROM run), 0)
+FROM all_classed AS a
+JOIN hvac_design AS d USING (design_id)
+JOIN comfort_window AS w USING (window_id)
+GROUP BY d.position, w.position, a.sorting, a.place";
+
+impl Store {
+    /// Completes the optima: renews the averages of the months that have changed, and records the stage.
+    ///
+    /// # Errors
+    /// [`StoreError::Statement`].
+    pub fn complete_optima(&mut self, record: &StageRecord) -> Result<(), StoreError> {
+        let renew = [
+            "DELETE FROM monthly_average WHERE month IN (SELECT month FROM stale_month)",
+            MONTHLY,
+            "DELETE FROM annual_average",
+            ANNUAL,
+            "DELETE FROM stale_month",
+        ];
+        self.complete("solve", record, &renew)
+    }
+
+    /// Completes the simulations: renews what they come to in the year and by class, and records the stage.
+    ///
+    /// # Errors
+    /// [`StoreError::Statement`].
+    pub fn complete_simulations(&mut self, record: &StageRecord) -> Result<(), StoreError> {
+        let renew =
+            ["DELETE FROM simulation_annual", SIMULATION_ANNUAL, "DELETE FROM simulation_class", SIMULATION_CLASS];
+        self.complete("simulate", record, &renew)
+    }
+
+    fn complete(&mut self, stage: &str, record: &StageRecord, renew: &[&'static str]) -> Result<(), StoreError> {
+        self.drive(async |c| {
+            let mut tx = c.begin().await?;
+            for &sql in renew {
+                execute(&mut tx, sql).await?;
+            }
+            record_stage(&mut tx, stage, record).await?;
+            Ok(tx.commit().await?)
+        })
+    }
+}
+
+async fn execute(c: &mut SqliteConnection, sql: &'static str) -> Result<(), StoreError> {
+    sqlx::query(sql).execute(c).await?;
+    Ok(())
+}
