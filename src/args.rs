@@ -9,7 +9,7 @@ const MOST_THREADS: i64 = 1024;
 /// What thermal comfort in an electric city bus costs over a whole year.
 ///
 /// Exit status: 0 done; 1 finished, but points stayed unsolved or inputs were refused; 2 usage or study file wrong;
-/// 3 inputs or database unusable; 4 interrupted, run again to resume.
+/// 3 inputs or database unusable; 4 interrupted, run again to resume; 5 another run is at work on the database.
 #[derive(Debug, Parser)]
 #[command(version, max_term_width = 100)]
 pub struct Args {
@@ -27,6 +27,10 @@ pub struct Args {
     /// Read every input again, also those that look as they did.
     #[arg(long, global = true)]
     pub rehash: bool,
+
+    /// How long to wait for another run on the same database.
+    #[arg(long, global = true, value_name = "SECONDS", default_value_t = 0)]
+    pub wait: u64,
 
     /// Threads that compute; as many as cores without it. Results do not depend on it.
     #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
@@ -71,6 +75,16 @@ pub enum Command {
         study: StudyArgs,
         #[command(flatten)]
         part: PartArgs,
+    },
+    /// Copy the database as it is at one moment into a new file, while anything runs.
+    Backup {
+        /// Study file, or the folder of one.
+        study: PathBuf,
+        /// The copy.
+        file: PathBuf,
+        /// Where the experiment database lies, instead of where the study file says.
+        #[arg(long, value_name = "FILE")]
+        db: Option<PathBuf>,
     },
     /// What the database holds, what is pending, what failed.
     Status {

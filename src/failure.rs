@@ -25,6 +25,9 @@ pub enum Failure {
     /// A signal came: exit status 4.
     #[error(transparent)]
     Interrupted(PipelineError),
+    /// Another run is at work: exit status 5.
+    #[error(transparent)]
+    Busy(PipelineError),
 }
 
 impl Ending {
@@ -46,6 +49,7 @@ impl Failure {
             Self::Usage(_) => 2,
             Self::Inputs(_) => 3,
             Self::Interrupted(_) => 4,
+            Self::Busy(_) => 5,
         })
     }
 }
@@ -61,6 +65,7 @@ impl From<PipelineError> for Failure {
         match error {
             PipelineError::Request(_) => Self::Usage(error.into()),
             PipelineError::Interrupted => Self::Interrupted(error),
+            PipelineError::Busy { .. } => Self::Busy(error),
             _ => Self::Inputs(error.into()),
         }
     }

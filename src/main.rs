@@ -13,12 +13,12 @@ use anyhow::anyhow;
 use clap::Parser;
 use std::path::Path;
 use std::process::ExitCode;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
-use args::{Args, Command, StudyArgs};
+use args::{Args, Command, Log, StudyArgs};
 use console::{Console, say};
 use failure::{Ending, Failure};
-use pipeline::{Part, Point, Stage};
+use pipeline::{Options, Part, Point, Stage};
 use study::Study;
 
 /// Missions come and go as blocks of megabytes: the system's allocator gives them back to the kernel each time, which
@@ -49,6 +49,7 @@ fn dispatch(args: &Args, console: &Console) -> Result<Ending, Failure> {
             .map_err(|e| Failure::Usage(anyhow!("--threads {threads}: {e}")))?;
     }
     console::stop_on_signal()?;
+    let options = Options { rehash: args.rehash, wait: Duration::from_secs(args.wait) };
     match &args.command {
         Command::Demo(demo) => {
             prepare::demo(demo, console)?;
@@ -68,26 +69,36 @@ fn dispatch(args: &Args, console: &Console) -> Result<Ending, Failure> {
             let study = open(study)?;
             print::check(&study, &pipeline::check(&study)?)
         }
-        Command::Ingest(study) => run(&open(study)?, &[Stage::Ingest], args.rehash, console),
-        Command::Shade(study) => run(&open(study)?, &[Stage::Shade], args.rehash, console),
+        Command::Ingest(study) => run(&open(study)?, &[Stage::Ingest], options, console),
+        Command::Shade(study) => run(&open(study)?, &[Stage::Shade], options, console),
         Command::Solve(solve) => {
-            run(&open(&solve.study)?.solved_by(solve.method.into()), &[Stage::Solve], args.rehash, console)
+            run(&open(&solve.study)?.solved_by(solve.method.into()), &[Stage::Solve], options, console)
         }
-        Command::Simulate(study) => run(&open(study)?, &[Stage::Simulate], args.rehash, console),
-        Command::Report(study) => run(&open(study)?, &[Stage::Report], args.rehash, console),
+        Command::Simulate(study) => run(&open(study)?, &[Stage::Simulate], options, console),
+        Command::Report(study) => run(&open(study)?, &[Stage::Report], options, console),
         Command::Run(typed) => {
             let study = if typed.study.study.is_none() && !Path::new(STUDY_FILE).exists() {
+                if args.quiet || args.log == Log::Json {
+                    // Nobody is there to be shown a demo: a job in the wrong folder must not end well.
+                    return Err(Failure::Usage(anyhow!("there is no {STUDY_FILE} here; name a study file")));
+                }
                 StudyArgs { study: Some(prepare::demo_study(console)?), db: typed.study.db.clone() }
             } else {
                 typed.study.clone()
             };
-            run(&open(&study)?.solved_by(typed.method.into()), &Stage::ALL, args.rehash, console)
+            run(&open(&study)?.solved_by(typed.method.into()), &Stage::ALL, options, console)
         }
         Command::Verify { study, part } => {
             let study = open(study)?;
             let name = study.name.clone();
             let part = Part { fraction: part.fraction, seed: part.seed };
-            print::verification(&name, &pipeline::verify(study, part, console)?)
+            print::verification(&name, &pipeline::verify(study, part, options.wait, console)?)
+        }
+        Command::Backup { study, file, db } => {
+            let study = StudyArgs { study: Some(study.clone()), db: db.clone() };
+            pipeline::backup(&open(&study)?, file)?;
+            say(format_args!("{} is written", file.display()))?;
+            Ok(Ending::Done)
         }
         Command::Status { study, json } => print::status(&pipeline::status(&open(study)?)?, *json),
         Command::Show { study, point } => {
@@ -98,9 +109,9 @@ fn dispatch(args: &Args, console: &Console) -> Result<Ending, Failure> {
 }
 
 /// Runs stages and says what came of it.
-fn run(study: &Study, stages: &[Stage], rehash: bool, console: &Console) -> Result<Ending, Failure> {
+fn run(study: &Study, stages: &[Stage], options: Options, console: &Console) -> Result<Ending, Failure> {
     let begin = Instant::now();
-    let done = pipeline::run(study, stages, rehash, console)?;
+    let done = pipeline::run(study, stages, options, console)?;
     print::run(study, stages, &done, begin.elapsed())
 }
 

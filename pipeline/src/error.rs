@@ -67,6 +67,14 @@ pub enum PipelineError {
         /// What the system says.
         source: std::io::Error,
     },
+    /// Another run is at work on the database.
+    #[error("{database} is being written by another run ({holder}); wait for it, or give --wait SECONDS", database = database.display())]
+    Busy {
+        /// The database.
+        database: PathBuf,
+        /// Who writes it, and since when.
+        holder: String,
+    },
     /// Somebody asked to stop.
     #[error("interrupted; everything finished so far is stored: run again to resume")]
     Interrupted,

@@ -4,6 +4,7 @@
 //! [`Inputs`], which reads each input once, and through [`freshness`](crate::Stale): what is stale is an error with its
 //! remedy, never computed with in silence. Whoever calls the pipeline, a program or a service, watches it by [`Progress`].
 
+mod backup;
 mod bench;
 mod canyon;
 mod check;
@@ -13,6 +14,7 @@ mod freshness;
 mod in_order;
 mod ingest;
 mod inputs;
+mod lock;
 mod missions;
 mod optima;
 mod progress;
@@ -26,6 +28,7 @@ mod status;
 mod traces;
 mod verify;
 
+pub use backup::backup;
 pub use canyon::write_canyon;
 pub use check::{Check, check};
 pub use error::PipelineError;
@@ -34,7 +37,7 @@ pub use freshness::Stale;
 pub use in_order::in_order;
 pub use inputs::Inputs;
 pub use progress::{Progress, Quiet};
-pub use run::{Done, Stage, run};
+pub use run::{Done, Options, Stage, run};
 pub use show::{Point, Shown, show};
 pub use status::{LastRun, Status, Summary, status};
 pub use verify::{Approximation, Part, Verification, verify};

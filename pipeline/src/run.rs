@@ -1,9 +1,11 @@
 //! A run: stages in their order over one database, and its record.
 
+use std::time::Duration;
 use store::{RunEnd, Store};
 use study::Study;
 
 use crate::files::make_folder;
+use crate::lock::RunLock;
 use crate::record::{input_hash, now};
 use crate::{
     Inputs, PROGRAM_VERSION, PipelineError, Progress, Summary, freshness, ingest, optima, report, samples, simulations,
@@ -29,6 +31,15 @@ impl Stage {
     pub const ALL: [Self; 5] = [Self::Ingest, Self::Shade, Self::Solve, Self::Simulate, Self::Report];
 }
 
+/// How a run goes about its work.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Options {
+    /// Read every input again, also those that look as they did.
+    pub rehash: bool,
+    /// How long to wait for another run on the same database.
+    pub wait: Duration,
+}
+
 /// What a run has done.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Done {
@@ -38,17 +49,23 @@ pub struct Done {
     pub headline: Vec<String>,
 }
 
-/// Runs stages on a study's database, and records the run in it. Files that look as they did when they were stored are not
-/// read again, unless `rehash` asks for it. What is said of refused files goes to `progress` before an
+/// Runs stages on a study's database, and records the run in it. One run at a time writes a database. What is said of refused files goes to `progress` before an
 /// error is returned, since a refusal may be why nothing could be done.
 ///
 /// # Errors
 /// [`PipelineError`]; what is stored by then stays, and the next run goes on from there.
-pub fn run(study: &Study, stages: &[Stage], rehash: bool, progress: &dyn Progress) -> Result<Done, PipelineError> {
+pub fn run(study: &Study, stages: &[Stage], options: Options, progress: &dyn Progress) -> Result<Done, PipelineError> {
     let only_report = stages == [Stage::Report];
-    let mut store = if only_report { Store::open_read_only(&study.database)? } else { open(study)? };
+    let (mut store, _lock) = if only_report {
+        (Store::open_read_only(&study.database)?, None)
+    } else {
+        make_place(study)?;
+        let lock = RunLock::take(&study.database, options.wait, progress)?;
+        (Store::open(&study.database)?, Some(lock))
+    };
+    store.belongs_to(&study.name)?;
     let study = &as_solved(study, stages, &mut store)?;
-    let inputs = Inputs::new(study, rehash);
+    let inputs = Inputs::new(study, options.rehash);
     let run_id = if only_report { None } else { Some(store.start_run(now(), PROGRAM_VERSION, &study.hash)?) };
     let mut headline = Vec::new();
     let outcome = stages.iter().try_for_each(|stage| match stage {
@@ -100,9 +117,10 @@ fn as_solved(study: &Study, stages: &[Stage], store: &mut Store) -> Result<Study
     Ok(study.clone().solved_by(method.unwrap_or(study.method)))
 }
 
-fn open(study: &Study) -> Result<Store, PipelineError> {
-    if let Some(folder) = study.database.parent().filter(|f| !f.as_os_str().is_empty()) {
-        make_folder(folder)?;
+/// Makes the folder that the database lies in.
+fn make_place(study: &Study) -> Result<(), PipelineError> {
+    match study.database.parent().filter(|f| !f.as_os_str().is_empty()) {
+        Some(folder) => make_folder(folder),
+        None => Ok(()),
     }
-    Ok(Store::open(&study.database)?)
 }

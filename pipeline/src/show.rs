@@ -53,6 +53,7 @@ pub fn show(study: &Study, point: &Point) -> Result<Shown, PipelineError> {
     })?;
     let window = study.grid.windows()[place];
     let mut store = Store::open_read_only(&study.database)?;
+    store.belongs_to(&study.name)?;
     let sample = store.samples()?.into_iter().find(|s| s.id == point.sample).ok_or_else(|| {
         PipelineError::Request(format!("the database has no sample {}; see the view `sample`", point.sample))
     })?;

@@ -132,6 +132,7 @@ impl From<RunRow> for LastRun {
 /// [`PipelineError::Store`] where there is none or it cannot be read.
 pub fn status(study: &Study) -> Result<Status, PipelineError> {
     let mut store = Store::open_read_only(&study.database)?;
+    store.belongs_to(&study.name)?;
     let summary = Summary::of(study, &mut store)?;
     let counts = status_counts(&mut store)?;
     let months = store.months()?;

@@ -1,9 +1,9 @@
 //! Averages of the last complete stage: renewed in the transaction that completes it, so that readers never see one of a
 //! half-computed study.
 
-use sqlx::Connection;
 use sqlx::sqlite::SqliteConnection;
 
+use crate::row::begin;
 use crate::stages::{StageRecord, record_stage};
 use crate::{Store, StoreError};
 
@@ -189,7 +189,7 @@ impl Store {
 
     fn complete(&mut self, stage: &str, record: &StageRecord, renew: &[&'static str]) -> Result<(), StoreError> {
         self.drive(async |c| {
-            let mut tx = c.begin().await?;
+            let mut tx = begin(c).await?;
             for &sql in renew {
                 execute(&mut tx, sql).await?;
             }

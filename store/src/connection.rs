@@ -19,6 +19,7 @@ pub struct Store {
     runtime: Runtime,
     pub(crate) connection: SqliteConnection,
     path: PathBuf,
+    read_only: bool,
 }
 
 /// The database cannot be used.
@@ -35,10 +36,24 @@ pub enum StoreError {
     /// There is no such file.
     #[error("there is no database {0}; run the study first")]
     Missing(PathBuf),
-    /// The schema is not one that this program knows.
-    #[error(
-        "the schema of the database {path} does not fit this program: {source}; it was probably written by a newer version"
-    )]
+    /// The database is that of another study.
+    #[error("the database {path} holds the study {holds:?}, not {asked:?}; give this study a `database` of its own")]
+    OtherStudy {
+        /// The file.
+        path: PathBuf,
+        /// The study that it holds.
+        holds: String,
+        /// The study that asks for it.
+        asked: String,
+    },
+    /// A SQLite database that is none of ours.
+    #[error("{0} is a SQLite database of something else; it is left as it is: name another file as `database`")]
+    Foreign(PathBuf),
+    /// The schema is one of a version to come.
+    #[error("the database {0} was written by a newer version of busclimate; update the program")]
+    Newer(PathBuf),
+    /// The schema cannot be brought up to date.
+    #[error("the schema of the database {path} cannot be brought up to date: {source}")]
     Schema {
         /// The file.
         path: PathBuf,
@@ -73,13 +88,19 @@ impl Store {
             .pragma("cache_size", "-65536")
             // Folds the log into the file every 64 MiB instead of every 4: each time waits for the disk twice.
             .pragma("wal_autocheckpoint", "16384");
-        let mut store = Self::connect(path, &options)?;
+        let mut store = Self::connect(path, &options, false)?;
+        if !store.is_ours()? {
+            return Err(StoreError::Foreign(path.to_owned()));
+        }
         let migrated = {
             let Self { runtime, connection, .. } = &mut store;
             runtime.block_on(MIGRATIONS.run(connection))
         };
-        migrated.map_err(|source| StoreError::Schema { path: path.to_owned(), source })?;
-        Ok(store)
+        match migrated {
+            Ok(()) => Ok(store),
+            Err(MigrateError::VersionMissing(_)) => Err(StoreError::Newer(path.to_owned())),
+            Err(source) => Err(StoreError::Schema { path: path.to_owned(), source }),
+        }
     }
 
     /// Opens an existing database for reading. One of an earlier version is brought up to date first, which needs to write.
@@ -95,31 +116,69 @@ impl Store {
             .read_only(true)
             .busy_timeout(BUSY_TIMEOUT)
             .pragma("cache_size", "-65536");
-        let mut store = Self::connect(path, &options)?;
-        if store.is_current()? {
-            return Ok(store);
+        let mut store = Self::connect(path, &options, true)?;
+        match store.is_ours()?.then(|| store.is_current()).transpose()? {
+            None => return Err(StoreError::Foreign(path.to_owned())),
+            Some(true) => return Ok(store),
+            Some(false) => {}
         }
         store.close()?;
         Self::open(path)?.close()?;
-        Self::connect(path, &options)
+        Self::connect(path, &options, true)
     }
 
-    /// Whether the schema is that of this program.
-    fn is_current(&mut self) -> Result<bool, StoreError> {
+    /// Whether the file is new or was made by this program.
+    fn is_ours(&mut self) -> Result<bool, StoreError> {
         self.drive(async |c| {
-            let sql = "SELECT count(*) AS applied FROM _sqlx_migrations WHERE success";
+            let sql =
+                "SELECT count(*) AS tables, coalesce(sum(name = '_sqlx_migrations'), 0) AS ours FROM sqlite_schema";
             let row = sqlx::query(sql).fetch_one(c).await?;
-            Ok(row.try_get::<i64, _>("applied")? >= MIGRATIONS.iter().count() as i64)
+            Ok(row.try_get::<i64, _>("tables")? == 0 || row.try_get::<i64, _>("ours")? > 0)
         })
     }
 
-    fn connect(path: &Path, options: &SqliteConnectOptions) -> Result<Self, StoreError> {
+    /// Whether the schema is that of this program; a newer one is an error.
+    fn is_current(&mut self) -> Result<bool, StoreError> {
+        let path = self.path.clone();
+        self.drive(async |c| {
+            let table = "SELECT count(*) AS tables FROM sqlite_schema WHERE name = '_sqlx_migrations'";
+            if sqlx::query(table).fetch_one(&mut *c).await?.try_get::<i64, _>("tables")? == 0 {
+                return Ok(false);
+            }
+            let sql = "SELECT coalesce(max(version), 0) AS newest FROM _sqlx_migrations WHERE success";
+            let newest: i64 = sqlx::query(sql).fetch_one(c).await?.try_get("newest")?;
+            let ours = MIGRATIONS.iter().map(|m| m.version).max().unwrap_or(0);
+            if newest > ours { Err(StoreError::Newer(path)) } else { Ok(newest == ours) }
+        })
+    }
+
+    /// Checks that the database is that of a study; a new one becomes it.
+    ///
+    /// # Errors
+    /// [`StoreError::OtherStudy`] where it holds another one.
+    pub fn belongs_to(&mut self, study: &str) -> Result<(), StoreError> {
+        let (path, read_only) = (self.path.clone(), self.read_only);
+        self.drive(async |c| {
+            let row = sqlx::query("SELECT name FROM study").fetch_optional(&mut *c).await?;
+            match row.map(|r| r.try_get::<String, _>("name")).transpose()? {
+                Some(holds) if holds != study => Err(StoreError::OtherStudy { path, holds, asked: study.to_owned() }),
+                Some(_) => Ok(()),
+                None if read_only => Ok(()),
+                None => {
+                    sqlx::query("INSERT OR IGNORE INTO study VALUES (1, ?)").bind(study).execute(c).await?;
+                    Ok(())
+                }
+            }
+        })
+    }
+
+    fn connect(path: &Path, options: &SqliteConnectOptions, read_only: bool) -> Result<Self, StoreError> {
         let runtime =
             tokio::runtime::Builder::new_current_thread().enable_time().build().map_err(StoreError::Runtime)?;
         let options = options.clone().disable_statement_logging();
         let connection =
             runtime.block_on(options.connect()).map_err(|source| StoreError::Open { path: path.to_owned(), source })?;
-        Ok(Self { runtime, connection, path: path.to_owned() })
+        Ok(Self { runtime, connection, path: path.to_owned(), read_only })
     }
 
     /// The file.
@@ -128,11 +187,33 @@ impl Store {
         &self.path
     }
 
-    /// Closes the connection after it has folded the write-ahead log into the database file.
+    /// Copies the database as it is at one moment into a new file, compact and without a log, while anything runs.
+    ///
+    /// # Errors
+    /// [`StoreError::Statement`] where the file is there already or cannot be written.
+    pub fn copy_to(&mut self, path: &Path) -> Result<(), StoreError> {
+        let target = path.to_string_lossy().into_owned();
+        self.drive(async |c| {
+            sqlx::query("VACUUM INTO ?").bind(target).execute(c).await?;
+            Ok(())
+        })
+    }
+
+    /// Closes the connection. One that wrote folds the write-ahead log into the database file first and leaves the file alone
+    /// at its place, readable without a log; while others read, the last of them does that.
     ///
     /// # Errors
     /// [`StoreError::Statement`] where the last writes cannot be completed.
-    pub fn close(self) -> Result<(), StoreError> {
+    pub fn close(mut self) -> Result<(), StoreError> {
+        if !self.read_only {
+            self.drive(async |c| {
+                sqlx::query("PRAGMA wal_checkpoint(TRUNCATE)").execute(&mut *c).await?;
+                // Readers keep the log: then it stays, and says so by its answer.
+                sqlx::query("PRAGMA busy_timeout = 0").execute(&mut *c).await?;
+                let _ = sqlx::query("PRAGMA journal_mode = DELETE").fetch_optional(c).await;
+                Ok(())
+            })?;
+        }
         Ok(self.runtime.block_on(self.connection.close())?)
     }
 

@@ -1,11 +1,11 @@
 //! Input files, and what was noticed in them.
 
 use ingest::{FileKind, FileRecord, FileStamp, Finding, FindingKind};
+use sqlx::Row;
 use sqlx::sqlite::{SqliteConnection, SqliteRow};
-use sqlx::{Connection, Row};
 use std::collections::BTreeMap;
 
-use crate::row::{Insert, count, optional_time, time_text, word};
+use crate::row::{Insert, begin, count, optional_time, time_text, word};
 use crate::{Store, StoreError};
 
 /// A file that the database holds.
@@ -58,7 +58,7 @@ impl Store {
     /// [`StoreError::Statement`].
     pub fn put_file(&mut self, file: &FileRecord, reading_key: &str) -> Result<(), StoreError> {
         self.drive(async |c| {
-            let mut tx = c.begin().await?;
+            let mut tx = begin(c).await?;
             replace_file(&mut tx, file, reading_key).await?;
             Ok(tx.commit().await?)
         })
@@ -71,7 +71,7 @@ impl Store {
     pub fn keep_files(&mut self, kind: FileKind, paths: &[String]) -> Result<u64, StoreError> {
         let known = self.known_files(kind)?;
         self.drive(async |c| {
-            let mut tx = c.begin().await?;
+            let mut tx = begin(c).await?;
             let forgotten = forget_others(&mut tx, known.keys(), paths).await?;
             tx.commit().await?;
             Ok(forgotten)

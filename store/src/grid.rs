@@ -3,10 +3,10 @@
 
 use cabin::{ComfortWindow, Devices, Heating};
 use solve::Method;
+use sqlx::Row;
 use sqlx::sqlite::{SqliteConnection, SqliteRow};
-use sqlx::{Connection, Row};
 
-use crate::row::{Insert, window, word};
+use crate::row::{Insert, begin, window, word};
 use crate::{Store, StoreError};
 
 /// A design of the study.
@@ -91,7 +91,7 @@ impl Store {
         let stored = self.grid()?;
         self.drive(async |c| {
             let mut change = GridChange::default();
-            let mut tx = c.begin().await?;
+            let mut tx = begin(c).await?;
             for (row, id) in stored.designs.iter().zip(&stored.design_ids) {
                 if !designs.iter().any(|d| d.name == row.name) {
                     sqlx::query("DELETE FROM hvac_design WHERE design_id = ?").bind(id).execute(&mut *tx).await?;

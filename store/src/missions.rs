@@ -3,11 +3,11 @@
 use cabin::LoadChange;
 use ingest::ExcludedSegment;
 use ingest::mission::{MissionReading, Segment};
+use sqlx::Row;
 use sqlx::sqlite::{SqliteConnection, SqliteRow};
-use sqlx::{Connection, Row};
 
 use crate::files::replace_file;
-use crate::row::{Insert, count, time, time_text};
+use crate::row::{Insert, begin, count, time, time_text};
 use crate::{Store, StoreError};
 
 /// A stored segment: its mission's reading key, and the segment or why there is none.
@@ -21,7 +21,7 @@ impl Store {
     /// [`StoreError::Statement`].
     pub fn put_mission(&mut self, reading: &MissionReading, reading_key: &str) -> Result<(), StoreError> {
         self.drive(async |c| {
-            let mut tx = c.begin().await?;
+            let mut tx = begin(c).await?;
             let id = replace_file(&mut tx, &reading.file, reading_key).await?;
             // What an earlier reading of the mission led to is void.
             let mut missions =

@@ -3,10 +3,10 @@
 use cabin::{Devices, Infeasible, OperatingMode, Operation, Optimum, Outcome, StandardRange, Temperatures};
 use solve::nlp::Effort;
 use sqlx::sqlite::{SqliteArguments, SqliteConnection, SqliteRow};
-use sqlx::{Arguments, AssertSqlSafe, Connection, Row};
+use sqlx::{Arguments, AssertSqlSafe, Row};
 use std::collections::BTreeSet;
 
-use crate::row::{count, insert_sql};
+use crate::row::{begin, count, insert_sql};
 use crate::{Store, StoreError, StoredGrid};
 
 /// The columns, in the order in which [`add_row`] gives their values.
@@ -138,7 +138,7 @@ impl Store {
         mut points: impl Iterator<Item = (i64, &'a Optimum, Option<Effort>)>,
     ) -> Result<(), StoreError> {
         self.drive(async |c| {
-            let mut tx = c.begin().await?;
+            let mut tx = begin(c).await?;
             // Deleting first leaves plain inserts, which cost less than replacing ones.
             let ids = samples.iter().map(i64::to_string).collect::<Vec<_>>().join(",");
             sqlx::query("DELETE FROM optimum_point WHERE sample_id IN (SELECT value FROM json_each(?))")

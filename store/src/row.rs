@@ -3,9 +3,14 @@
 use cabin::ComfortWindow;
 use chrono::{DateTime, SecondsFormat, Utc};
 use sqlx::sqlite::{SqliteArguments, SqliteConnection, SqliteRow};
-use sqlx::{Arguments, AssertSqlSafe, Encode, Row, Sqlite, Type};
+use sqlx::{Arguments, AssertSqlSafe, Connection, Encode, Row, Sqlite, Transaction, Type};
 
 use crate::StoreError;
+
+/// A transaction that writes from its beginning: one that only reads at first could not wait for another writer.
+pub(crate) async fn begin(c: &mut SqliteConnection) -> Result<Transaction<'_, Sqlite>, StoreError> {
+    Ok(c.begin_with("BEGIN IMMEDIATE").await?)
+}
 
 /// A row on its way into a table.
 pub(crate) struct Insert {

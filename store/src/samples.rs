@@ -3,13 +3,13 @@
 use cabin::Disturbances;
 use ingest::sample::Sample;
 use ingest::{ExcludedSegment, FileKind, FileRecord};
+use sqlx::Row;
 use sqlx::sqlite::{SqliteConnection, SqliteRow};
-use sqlx::{Connection, Row};
 use std::collections::BTreeMap;
 
 use crate::files::{forget_others, replace_file};
 use crate::missions::segment;
-use crate::row::{Insert, count, time_text};
+use crate::row::{Insert, begin, count, time_text};
 use crate::{Store, StoreError};
 
 impl Store {
@@ -40,7 +40,7 @@ impl Store {
         joined_with: &[(FileRecord, String)],
     ) -> Result<(u64, u64), StoreError> {
         self.drive(async |c| {
-            let mut tx = c.begin().await?;
+            let mut tx = begin(c).await?;
             for kind in [FileKind::Weather, FileKind::Shadow] {
                 let of_kind = || joined_with.iter().filter(|(f, _)| f.kind == kind);
                 let paths: Vec<String> = of_kind().map(|(f, _)| f.path.clone()).collect();

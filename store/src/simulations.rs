@@ -1,11 +1,11 @@
 //! Simulated missions: which are there, and writing them.
 
 use simulate::{Replay, Summary};
+use sqlx::Row;
 use sqlx::sqlite::SqliteConnection;
-use sqlx::{Connection, Row};
 use std::collections::BTreeMap;
 
-use crate::row::{Insert, count, window};
+use crate::row::{Insert, begin, count, window};
 use crate::{Store, StoreError, StoredGrid};
 use cabin::ComfortWindow;
 
@@ -125,7 +125,7 @@ impl Store {
     /// [`StoreError::Statement`].
     pub fn rekey_simulations(&mut self, grid: &StoredGrid, keys: &[(SimulationId, String)]) -> Result<(), StoreError> {
         self.drive(async |c| {
-            let mut tx = c.begin().await?;
+            let mut tx = begin(c).await?;
             for (id, key) in keys {
                 let sql = "UPDATE simulated_mission SET simulation_key = ? WHERE design_id = ? AND window_id = ?
                     AND source_file_id = (SELECT source_file_id FROM source_file WHERE path = ?)";
@@ -147,7 +147,7 @@ impl Store {
     /// [`StoreError::Statement`].
     pub fn forget_simulations(&mut self, grid: &StoredGrid, ids: &[SimulationId]) -> Result<(), StoreError> {
         self.drive(async |c| {
-            let mut tx = c.begin().await?;
+            let mut tx = begin(c).await?;
             for id in ids {
                 forget(&mut tx, grid, id).await?;
             }
@@ -161,7 +161,7 @@ impl Store {
     /// [`StoreError::Statement`].
     pub fn put_simulations(&mut self, grid: &StoredGrid, rows: &[SimulationRow]) -> Result<(), StoreError> {
         self.drive(async |c| {
-            let mut tx = c.begin().await?;
+            let mut tx = begin(c).await?;
             for row in rows {
                 forget(&mut tx, grid, &row.id).await?;
                 let sql = "SELECT source_file_id FROM source_file WHERE path = ?";

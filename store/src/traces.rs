@@ -3,11 +3,11 @@
 use cabin::{ComfortWindow, Operation};
 use ingest::sample::Sample;
 use simulate::TraceMinute;
+use sqlx::Row;
 use sqlx::sqlite::SqliteRow;
-use sqlx::{Connection, Row};
 
 use crate::optima::operation;
-use crate::row::{Insert, window};
+use crate::row::{Insert, begin, window};
 use crate::samples::sample;
 use crate::{SimulationId, Store, StoreError, StoredGrid};
 
@@ -76,7 +76,7 @@ impl Store {
     /// [`StoreError::Statement`].
     pub fn put_traces(&mut self, grid: &StoredGrid, rows: &[TraceRow], kept: &[&str]) -> Result<(), StoreError> {
         self.drive(async |c| {
-            let mut tx = c.begin().await?;
+            let mut tx = begin(c).await?;
             for r in sqlx::query("SELECT label FROM mission_trace").fetch_all(&mut *tx).await? {
                 let label: String = r.try_get("label")?;
                 if !kept.contains(&label.as_str()) {

@@ -1,9 +1,8 @@
 //! The record of verifications.
 
 use chrono::{DateTime, Utc};
-use sqlx::Connection;
 
-use crate::row::{Insert, time_text};
+use crate::row::{Insert, begin, time_text};
 use crate::{Store, StoreError};
 
 /// A verification of stored points.
@@ -52,7 +51,7 @@ impl Store {
     pub fn put_verification(&mut self, verification: &VerificationRow) -> Result<(), StoreError> {
         let violations: u64 = verification.checks.iter().map(|c| c.violations).sum();
         self.drive(async |c| {
-            let mut tx = c.begin().await?;
+            let mut tx = begin(c).await?;
             let id = Insert::into("verification")
                 .set("finished_utc", time_text(verification.finished))?
                 .set("program_version", verification.program_version.as_str())?

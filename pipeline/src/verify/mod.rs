@@ -8,9 +8,11 @@ use ingest::sample::Sample;
 use rayon::prelude::*;
 use solve::SampleSolver;
 use solve::nlp::{DoorLaw, NlpSolver, VoteForm};
+use std::time::Duration;
 use store::{CheckRow, Store, StoredGrid, StoredOptimum, VerificationRow};
 use study::Study;
 
+use crate::lock::RunLock;
 use crate::optima::vote_form;
 use crate::record::now;
 use crate::{PROGRAM_VERSION, PipelineError, Progress};
@@ -55,14 +57,21 @@ struct Context<'a> {
 ///
 /// # Errors
 /// [`PipelineError`] where the fraction is none or the database holds no optima of this study.
-pub fn verify(study: Study, part: Part, progress: &dyn Progress) -> Result<Verification, PipelineError> {
+pub fn verify(
+    study: Study,
+    part: Part,
+    wait: Duration,
+    progress: &dyn Progress,
+) -> Result<Verification, PipelineError> {
     if !(0.0..=1.0).contains(&part.fraction) {
         return Err(PipelineError::Request(format!("--fraction {} must lie between 0 and 1", part.fraction)));
     }
     if !study.database.exists() {
         return Err(store::StoreError::Missing(study.database.clone()).into());
     }
+    let _lock = RunLock::take(&study.database, wait, progress)?;
     let mut store = Store::open(&study.database)?;
+    store.belongs_to(&study.name)?;
     let (study, grid) = stored_grid(study, &mut store)?;
     let samples = store.samples()?;
     let context = Context {
