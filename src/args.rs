@@ -103,6 +103,22 @@ pub enum Command {
     },
 }
 
+impl Command {
+    /// Whether it looks at signals between its steps; the others are ended by them at once, and leave no file half written.
+    pub fn can_stop(&self) -> bool {
+        matches!(
+            self,
+            Self::Ingest(_)
+                | Self::Shade(_)
+                | Self::Solve(_)
+                | Self::Simulate(_)
+                | Self::Report(_)
+                | Self::Run(_)
+                | Self::Verify { .. }
+        )
+    }
+}
+
 #[derive(Debug, Clone, ClapArgs)]
 pub struct StudyArgs {
     /// Study file, or the folder of one [default: study.toml].

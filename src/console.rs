@@ -3,22 +3,50 @@
 use anyhow::{Context, anyhow};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use pipeline::Progress;
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+use signal_hook::flag;
 use std::fmt;
 use std::io::{IsTerminal, Write, stderr, stdout};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use tracing_subscriber::filter::LevelFilter;
 
 use crate::args::Log;
 use crate::failure::Failure;
 
-static STOP: AtomicBool = AtomicBool::new(false);
+static STOP: OnceLock<Arc<AtomicBool>> = OnceLock::new();
 static STYLE: OnceLock<ProgressStyle> = OnceLock::new();
 
-/// Turns Ctrl-C and SIGTERM into a flag that the stages ask for between their steps.
+/// Turns signals that ask to end into a flag that the stages ask for between their steps. One that the caller has the program
+/// ignore stays ignored, such as SIGHUP under nohup.
 pub fn stop_on_signal() -> Result<(), Failure> {
-    ctrlc::set_handler(|| STOP.store(true, Ordering::Relaxed))
-        .map_err(|e| Failure::Usage(anyhow!("cannot listen to signals: {e}")))
+    let stop = STOP.get_or_init(Arc::default);
+    for signal in [SIGINT, SIGTERM, SIGHUP].into_iter().filter(|signal| !is_ignored(*signal)) {
+        flag::register(signal, Arc::clone(stop))
+            .map_err(|e| Failure::Usage(anyhow!("cannot listen to signals: {e}")))?;
+    }
+    Ok(())
+}
+
+/// Whether a signal was ignored when the program started, where the system tells.
+fn is_ignored(signal: i32) -> bool {
+    let Ok(status) = std::fs::read_to_string("/proc/self/status") else { return false };
+    let mask = status.lines().find_map(|line| u64::from_str_radix(line.strip_prefix("SigIgn:")?.trim(), 16).ok());
+    mask.is_some_and(|mask| mask & (1 << (signal - 1)) != 0)
+}
+
+/// stderr for log lines: a sink that is full or closed loses lines, and ends no run.
+struct LogSink;
+
+impl Write for LogSink {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        Ok(stderr().write(bytes).unwrap_or(bytes.len()))
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        let _ = stderr().flush();
+        Ok(())
+    }
 }
 
 /// What goes to stderr.
@@ -30,7 +58,7 @@ pub struct Console {
 impl Console {
     pub fn new(log: Log, quiet: bool) -> Self {
         let level = if quiet { LevelFilter::WARN } else { LevelFilter::INFO };
-        let lines = tracing_subscriber::fmt().with_writer(stderr).with_max_level(level).with_target(false);
+        let lines = tracing_subscriber::fmt().with_writer(|| LogSink).with_max_level(level).with_target(false);
         match log {
             Log::Text => lines.without_time().with_ansi(stderr().is_terminal()).init(),
             Log::Json => lines.json().flatten_event(true).init(),
@@ -81,7 +109,7 @@ impl Progress for Console {
     }
 
     fn stop(&self) -> bool {
-        STOP.load(Ordering::Relaxed)
+        STOP.get().is_some_and(|stop| stop.load(Ordering::Relaxed))
     }
 }
 

@@ -48,7 +48,9 @@ fn dispatch(args: &Args, console: &Console) -> Result<Ending, Failure> {
             .build_global()
             .map_err(|e| Failure::Usage(anyhow!("--threads {threads}: {e}")))?;
     }
-    console::stop_on_signal()?;
+    if args.command.can_stop() {
+        console::stop_on_signal()?;
+    }
     let options = Options { rehash: args.rehash, wait: Duration::from_secs(args.wait) };
     match &args.command {
         Command::Demo(demo) => {

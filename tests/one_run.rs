@@ -143,3 +143,44 @@ fn cli_a_job_without_a_study_file_gets_no_demo() {
     }
     assert!(!scratch.path("busclimate-demo").exists());
 }
+
+#[test]
+#[cfg(unix)]
+fn cli_a_signal_ends_a_simulation_soon_and_the_next_run_goes_on() {
+    let scratch = Scratch::demo(24);
+    let mut run = start(&scratch);
+    let count = || scratch.query("SELECT count(*) FROM simulation")[0][0].parse::<u32>().unwrap();
+    for _ in 0..2000 {
+        if scratch.path("study.db").exists() && count() > 0 {
+            break;
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    assert!(Command::new("kill").args(["-TERM", &run.id().to_string()]).status().unwrap().success());
+    let since = std::time::Instant::now();
+    assert_eq!(run.wait().unwrap().code(), Some(4));
+    assert!(since.elapsed() < Duration::from_secs(30), "the signal is not looked at");
+    assert_eq!(scratch.query("SELECT count(*) FROM simulation_annual"), [["0"]], "half a result shows");
+    scratch.expect(0, &["run"]);
+    assert_eq!(count(), 24 * 5 * 5 * 4);
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn cli_a_full_log_and_a_pipe_in_the_place_of_a_file_end_nothing_badly() {
+    let scratch = small();
+    let full = std::fs::File::options().write(true).open("/dev/full").unwrap();
+    let status = Command::new(env!("CARGO_BIN_EXE_busclimate"))
+        .current_dir(scratch.folder.path())
+        .arg("run")
+        .stdout(Stdio::null())
+        .stderr(full)
+        .status()
+        .unwrap();
+    assert_eq!(status.code(), Some(0));
+    assert_eq!(scratch.query("SELECT status FROM run"), [["done"]]);
+    std::fs::remove_file(scratch.path("shadow.csv")).unwrap();
+    assert!(Command::new("mkfifo").arg(scratch.path("shadow.csv")).status().unwrap().success());
+    let run = scratch.expect(3, &["run"]);
+    assert!(run.stderr.contains("not a regular file"), "{}", run.stderr);
+}

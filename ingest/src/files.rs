@@ -100,6 +100,11 @@ impl FileReader {
     /// # Errors
     /// A finding that says why it cannot be read.
     pub(crate) fn read(&mut self, path: &Path) -> Result<Content, Finding> {
+        // A pipe would be waited for without end.
+        if std::fs::metadata(path).is_ok_and(|m| !m.is_file()) {
+            let message = "not a regular file; give a file";
+            return Err(Finding::whole(FindingKind::Unreadable, message));
+        }
         let file = File::open(path).map_err(|e| unreadable(&e))?;
         let metadata = file.metadata().map_err(|e| unreadable(&e))?;
         let content = limited(file, metadata.len(), std::mem::take(&mut self.buffer))?;

@@ -5,9 +5,12 @@ use std::fs::{File, TryLockError};
 use std::io::{Read, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
+use store::lock_path;
 
 use crate::{PipelineError, Progress};
 
+/// What is waited for in any case: a reader may be bringing the schema up to date.
+const LEAST_WAIT: Duration = Duration::from_secs(1);
 /// How often a waiting run looks again.
 const LOOK: Duration = Duration::from_millis(50);
 
@@ -22,9 +25,7 @@ pub(crate) struct RunLock {
 impl RunLock {
     /// Takes the lock of a database, or waits so long for it.
     pub fn take(database: &Path, wait: Duration, progress: &dyn Progress) -> Result<Self, PipelineError> {
-        let mut path = database.as_os_str().to_owned();
-        path.push(".lock");
-        let path = PathBuf::from(path);
+        let path = lock_path(database);
         let error = |source| PipelineError::Write { path: path.clone(), source };
         let since = Instant::now();
         loop {
@@ -45,7 +46,7 @@ impl RunLock {
             if progress.stop() {
                 return Err(PipelineError::Interrupted);
             }
-            if since.elapsed() >= wait {
+            if since.elapsed() >= wait.max(LEAST_WAIT) {
                 let mut holder = String::new();
                 // Who holds it is news, not a condition.
                 let _ = file.rewind().and_then(|()| file.read_to_string(&mut holder));

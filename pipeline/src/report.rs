@@ -41,28 +41,7 @@ pub(crate) fn report(study: &Study, store: &mut Store) -> Result<Vec<String>, Pi
 }
 
 fn write(study: &Study, store: &mut Store) -> Result<Written, PipelineError> {
-    let content = StudyReport {
-        name: study.name.clone(),
-        note: study.note.clone(),
-        program_version: PROGRAM_VERSION.to_owned(),
-        study_hash: study.hash.clone(),
-        input_hash: input_hash(store)?,
-        zone: study.zone,
-        designs: study.design_rows.clone(),
-        annual: store.annual()?,
-        monthly: store.monthly()?,
-        months: store.months()?,
-        limit_shares: store.limit_shares()?,
-        status: store.status_counts()?,
-        files: store.files()?,
-        exclusions: store.exclusion_counts()?,
-        assumptions: assumptions(study),
-        simulated_years: store.simulated_years()?,
-        simulated_classes: store.simulated_classes()?,
-        simulation_failures: store.simulation_failures()?,
-        traces: store.traces()?,
-        trace_windows: store.trace_windows()?,
-    };
+    let content = store.at_one_moment(|store| content(study, store))?;
     let files = report::render(&content)?;
     make_folder(&study.report_dir)?;
     let mut written = Written { files: Vec::new(), headline: report::headline(&content) };
@@ -88,4 +67,30 @@ pub(crate) fn say_stale(
         progress.warn(&format!("{}; the report is of what the database holds, `busclimate run` renews it", stale.what));
     }
     Ok(())
+}
+
+/// What the database holds for the report.
+fn content(study: &Study, store: &mut Store) -> Result<StudyReport, PipelineError> {
+    Ok(StudyReport {
+        name: study.name.clone(),
+        note: study.note.clone(),
+        program_version: PROGRAM_VERSION.to_owned(),
+        study_hash: study.hash.clone(),
+        input_hash: input_hash(store)?,
+        zone: study.zone,
+        designs: study.design_rows.clone(),
+        annual: store.annual()?,
+        monthly: store.monthly()?,
+        months: store.months()?,
+        limit_shares: store.limit_shares()?,
+        status: store.status_counts()?,
+        files: store.files()?,
+        exclusions: store.exclusion_counts()?,
+        assumptions: assumptions(study),
+        simulated_years: store.simulated_years()?,
+        simulated_classes: store.simulated_classes()?,
+        simulation_failures: store.simulation_failures()?,
+        traces: store.traces()?,
+        trace_windows: store.trace_windows()?,
+    })
 }

@@ -76,7 +76,7 @@ pub(crate) fn simulate(
         for samples in chunk {
             jobs.extend(bench.job(store, samples, &missing)?);
         }
-        let rows: Vec<Vec<SimulationRow>> = jobs.par_iter().map(|job| bench.run(job)).collect();
+        let rows: Vec<Vec<SimulationRow>> = jobs.par_iter().map(|job| bench.run(job, progress)).collect();
         let rows = rows.concat();
         simulated += rows.iter().map(|r| r.result.as_ref().map_or(0, Vec::len)).sum::<usize>();
         if !rows.is_empty() {
@@ -85,6 +85,9 @@ pub(crate) fn simulate(
         progress.advance(chunk.len() as u64);
     }
     progress.end();
+    if progress.stop() {
+        return Err(PipelineError::Interrupted);
+    }
     traces::trace(&bench, store, &wanted)?;
     progress.info(&told(study, simulated, bench.missions.len(), stale.len()));
     store.complete_simulations(&StageRecord { key, result: bench.missions.len().to_string() })?;
@@ -123,8 +126,8 @@ impl Bench<'_> {
         Ok(Some(Job { samples, loads: store.loads(&samples[0].segment.source_path)?, points }))
     }
 
-    /// Simulates a mission in all the ways that are wanted.
-    fn run(&self, job: &Job<'_>) -> Vec<SimulationRow> {
+    /// Simulates a mission in all the ways that are wanted, up to where somebody asks to stop: each row is whole by itself.
+    fn run(&self, job: &Job<'_>, progress: &dyn Progress) -> Vec<SimulationRow> {
         let in_time = MissionInTime::new(self.study, &self.views, &self.surroundings, job.samples, &job.loads);
         let first = &job.samples[0];
         let ambient_k =
@@ -149,7 +152,7 @@ impl Bench<'_> {
                 result,
             }
         };
-        job.points.iter().map(row).collect()
+        job.points.iter().take_while(|_| !progress.stop()).map(row).collect()
     }
 }
 

@@ -3,9 +3,10 @@
 use sqlx::migrate::{MigrateError, Migrator};
 use sqlx::sqlite::{SqliteConnectOptions, SqliteConnection, SqliteJournalMode, SqliteSynchronous};
 use sqlx::{ConnectOptions, Connection, Row};
+use std::fs::File;
 use std::future::Future;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use tokio::runtime::Runtime;
 
 static MIGRATIONS: Migrator = sqlx::migrate!("../migrations");
@@ -71,6 +72,14 @@ pub enum StoreError {
     Runtime(std::io::Error),
 }
 
+/// The file whose lock the writer of a database holds.
+#[must_use]
+pub fn lock_path(database: &Path) -> PathBuf {
+    let mut path = database.as_os_str().to_owned();
+    path.push(".lock");
+    PathBuf::from(path)
+}
+
 impl Store {
     /// Opens the database for writing; creates it and brings its schema up to date.
     ///
@@ -123,8 +132,30 @@ impl Store {
             Some(false) => {}
         }
         store.close()?;
-        Self::open(path)?.close()?;
+        Self::bring_up_to_date(path, &options)?;
         Self::connect(path, &options, true)
+    }
+
+    /// Renews the schema for a reader, or waits for the run that is about to: only one of them may.
+    fn bring_up_to_date(path: &Path, options: &SqliteConnectOptions) -> Result<(), StoreError> {
+        let (lock, since) = (lock_path(path), Instant::now());
+        let cannot = |source| StoreError::Open { path: path.to_owned(), source: sqlx::Error::Io(source) };
+        while since.elapsed() < BUSY_TIMEOUT {
+            let file = File::options().write(true).create(true).truncate(false).open(&lock).map_err(cannot)?;
+            if file.try_lock().is_ok() {
+                let renewed = Self::open(path).and_then(Self::close);
+                let _ = std::fs::remove_file(&lock);
+                return renewed;
+            }
+            std::thread::sleep(Duration::from_millis(20));
+            let mut store = Self::connect(path, options, true)?;
+            let current = store.is_current();
+            store.close()?;
+            if current? {
+                return Ok(());
+            }
+        }
+        Err(cannot(std::io::Error::new(std::io::ErrorKind::WouldBlock, "a run is bringing it up to date")))
     }
 
     /// Whether the file is new or was made by this program.
@@ -185,6 +216,27 @@ impl Store {
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
+    }
+
+    /// Reads several things as they are at one moment, whatever is written meanwhile.
+    ///
+    /// # Errors
+    /// Those of `read`, and [`StoreError::Statement`].
+    pub fn at_one_moment<T, E: From<StoreError>>(
+        &mut self,
+        read: impl FnOnce(&mut Self) -> Result<T, E>,
+    ) -> Result<T, E> {
+        self.execute("BEGIN")?;
+        let outcome = read(self);
+        self.execute("COMMIT")?;
+        outcome
+    }
+
+    fn execute(&mut self, sql: &'static str) -> Result<(), StoreError> {
+        self.drive(async |c| {
+            sqlx::query(sql).execute(c).await?;
+            Ok(())
+        })
     }
 
     /// Copies the database as it is at one moment into a new file, compact and without a log, while anything runs.

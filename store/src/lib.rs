@@ -19,7 +19,7 @@ mod traces;
 mod verification;
 mod views;
 
-pub use connection::{Store, StoreError};
+pub use connection::{Store, StoreError, lock_path};
 pub use files::KnownFile;
 pub use grid::{DesignRow, GridChange, StoredGrid};
 pub use missions::StoredSegment;

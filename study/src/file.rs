@@ -327,6 +327,10 @@ impl StudyFile {
     /// Reads and parses a study file.
     pub fn read(path: &Path) -> Result<Self, StudyFileError> {
         let shown = path.display().to_string();
+        if std::fs::metadata(path).is_ok_and(|m| !m.is_file()) {
+            let message = "not a regular file; give a file".to_owned();
+            return Err(StudyFileError::Content { path: shown, message });
+        }
         let text =
             std::fs::read_to_string(path).map_err(|source| StudyFileError::Read { path: shown.clone(), source })?;
         Self::parse(&text, &shown)

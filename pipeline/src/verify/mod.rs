@@ -98,6 +98,9 @@ pub fn verify(
             .par_iter()
             .map(|sample| {
                 let mut table = Table::new(study.method);
+                if progress.stop() {
+                    return table;
+                }
                 let from = rows.partition_point(|r| r.sample_id < sample.id);
                 let to = rows.partition_point(|r| r.sample_id <= sample.id);
                 context.sample(sample, &rows[from..to], &mut table);
@@ -109,6 +112,9 @@ pub fn verify(
         progress.advance(block.len() as u64);
     }
     progress.end();
+    if progress.stop() {
+        return Err(PipelineError::Interrupted);
+    }
     sums.compare(&study, &samples, &mut store, &mut table)?;
 
     let checks: Vec<CheckRow> = table.rows();

@@ -202,8 +202,8 @@ fn operation(end: &End, devices: Devices, vehicle: &Vehicle, views: &PassengerVi
     }
 }
 
-/// Samples that one task solves.
-const BLOCK: usize = 8;
+/// Samples that one task solves: some hundredths of a second each, so that a wave of them ends soon after it is asked to.
+const BLOCK: usize = 2;
 
 /// As [`crate::solve_blocks`], by the paper's method; `consume` also gets what each point has cost.
 pub fn nlp_blocks(
