@@ -1,10 +1,9 @@
 //! A copy of a study's database.
 
 use std::path::Path;
-use store::Store;
 use study::Study;
 
-use crate::PipelineError;
+use crate::{PipelineError, open};
 
 /// Copies the database of a study as it is at one moment, while anything runs. The copy is whole or not there.
 ///
@@ -14,8 +13,7 @@ pub fn backup(study: &Study, to: &Path) -> Result<(), PipelineError> {
     if to.exists() {
         return Err(PipelineError::Request(format!("{} is there already; it is left as it is", to.display())));
     }
-    let mut store = Store::open_read_only(&study.database)?;
-    store.belongs_to(&study.name)?;
+    let mut store = open::for_reading(study)?;
     let mut part = to.as_os_str().to_owned();
     part.push(".part");
     let part = Path::new(&part);

@@ -16,6 +16,7 @@ mod ingest;
 mod inputs;
 mod lock;
 mod missions;
+mod open;
 mod optima;
 mod progress;
 mod record;

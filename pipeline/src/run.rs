@@ -4,11 +4,11 @@ use std::time::Duration;
 use store::{RunEnd, Store};
 use study::Study;
 
-use crate::files::make_folder;
 use crate::lock::RunLock;
 use crate::record::{input_hash, now};
 use crate::{
-    Inputs, PROGRAM_VERSION, PipelineError, Progress, Summary, freshness, ingest, optima, report, samples, simulations,
+    Inputs, PROGRAM_VERSION, PipelineError, Progress, Summary, freshness, ingest, open, optima, report, samples,
+    simulations,
 };
 
 /// One step of a run; each one builds on what the steps before it have stored.
@@ -49,21 +49,21 @@ pub struct Done {
     pub headline: Vec<String>,
 }
 
-/// Runs stages on a study's database, and records the run in it. One run at a time writes a database. What is said of refused files goes to `progress` before an
-/// error is returned, since a refusal may be why nothing could be done.
+/// Runs stages on a study's database, and records the run in it. One run at a time writes a database. What is said of
+/// refused files goes to `progress` before an error is returned, since a refusal may be why nothing could be done.
 ///
 /// # Errors
 /// [`PipelineError`]; what is stored by then stays, and the next run goes on from there.
 pub fn run(study: &Study, stages: &[Stage], options: Options, progress: &dyn Progress) -> Result<Done, PipelineError> {
     let only_report = stages == [Stage::Report];
-    let (mut store, _lock) = if only_report {
-        (Store::open_read_only(&study.database)?, None)
+    // Declared before the database, so that it outlives it.
+    let _lock = if only_report {
+        None
     } else {
-        make_place(study)?;
-        let lock = RunLock::take(&study.database, options.wait, progress)?;
-        (Store::open(&study.database)?, Some(lock))
+        open::make_place(study)?;
+        Some(RunLock::take(&study.database, options.wait, progress)?)
     };
-    store.belongs_to(&study.name)?;
+    let mut store = if only_report { open::for_reading(study)? } else { open::for_writing(study)? };
     let study = &as_solved(study, stages, &mut store)?;
     let inputs = Inputs::new(study, options.rehash);
     let run_id = if only_report { None } else { Some(store.start_run(now(), PROGRAM_VERSION, &study.hash)?) };
@@ -115,12 +115,4 @@ pub fn run(study: &Study, stages: &[Stage], options: Options, progress: &dyn Pro
 fn as_solved(study: &Study, stages: &[Stage], store: &mut Store) -> Result<Study, PipelineError> {
     let method = if stages.contains(&Stage::Solve) { None } else { store.grid()?.designs.first().map(|d| d.method) };
     Ok(study.clone().solved_by(method.unwrap_or(study.method)))
-}
-
-/// Makes the folder that the database lies in.
-fn make_place(study: &Study) -> Result<(), PipelineError> {
-    match study.database.parent().filter(|f| !f.as_os_str().is_empty()) {
-        Some(folder) => make_folder(folder),
-        None => Ok(()),
-    }
 }

@@ -4,10 +4,10 @@ use cabin::{Cabin, Candidate, ComfortWindow, HeatFlows, Operation, PassengerView
 use ingest::sample::Sample;
 use report::{HeatFlowFigure, heat_flow_svg};
 use solve::SampleSolver;
-use store::{OptimumRow, Store};
+use store::OptimumRow;
 use study::Study;
 
-use crate::PipelineError;
+use crate::{PipelineError, open};
 
 /// Which optimum.
 #[derive(Debug, Clone, PartialEq)]
@@ -52,8 +52,7 @@ pub fn show(study: &Study, point: &Point) -> Result<Shown, PipelineError> {
         PipelineError::Request(format!("the study has no limit {}; it has: {}", point.pmv_limit, limits.join(", ")))
     })?;
     let window = study.grid.windows()[place];
-    let mut store = Store::open_read_only(&study.database)?;
-    store.belongs_to(&study.name)?;
+    let mut store = open::for_reading(study)?;
     let sample = store.samples()?.into_iter().find(|s| s.id == point.sample).ok_or_else(|| {
         PipelineError::Request(format!("the database has no sample {}; see the view `sample`", point.sample))
     })?;

@@ -6,8 +6,8 @@ use serde::Serialize;
 use store::{Counts, RunRow, StatusCounts, Store};
 use study::Study;
 
-use crate::PipelineError;
 use crate::freshness::SOLVE;
+use crate::{PipelineError, open};
 
 /// What the database holds of a study, in short.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -131,8 +131,7 @@ impl From<RunRow> for LastRun {
 /// # Errors
 /// [`PipelineError::Store`] where there is none or it cannot be read.
 pub fn status(study: &Study) -> Result<Status, PipelineError> {
-    let mut store = Store::open_read_only(&study.database)?;
-    store.belongs_to(&study.name)?;
+    let mut store = open::for_reading(study)?;
     let summary = Summary::of(study, &mut store)?;
     let counts = status_counts(&mut store)?;
     let months = store.months()?;

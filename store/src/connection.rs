@@ -80,12 +80,29 @@ pub fn lock_path(database: &Path) -> PathBuf {
     PathBuf::from(path)
 }
 
+/// How a database is read.
+fn reading(path: &Path) -> SqliteConnectOptions {
+    SqliteConnectOptions::new()
+        .filename(path)
+        .read_only(true)
+        .busy_timeout(BUSY_TIMEOUT)
+        // 64 MiB of pages: a study's tables are read back from memory.
+        .pragma("cache_size", "-65536")
+}
+
 impl Store {
-    /// Opens the database for writing; creates it and brings its schema up to date.
+    /// Opens the database for writing; creates it and brings its schema up to date. A file of something else, or of a newer
+    /// version, is only read.
     ///
     /// # Errors
     /// [`StoreError`] where the file cannot be opened or its schema is unknown.
     pub fn open(path: &Path) -> Result<Self, StoreError> {
+        if path.exists() {
+            let mut looked_at = Self::connect(path, &reading(path), true)?;
+            let current = looked_at.is_current();
+            looked_at.close()?;
+            current?;
+        }
         let options = SqliteConnectOptions::new()
             .filename(path)
             .create_if_missing(true)
@@ -98,18 +115,12 @@ impl Store {
             // Folds the log into the file every 64 MiB instead of every 4: each time waits for the disk twice.
             .pragma("wal_autocheckpoint", "16384");
         let mut store = Self::connect(path, &options, false)?;
-        if !store.is_ours()? {
-            return Err(StoreError::Foreign(path.to_owned()));
-        }
         let migrated = {
             let Self { runtime, connection, .. } = &mut store;
             runtime.block_on(MIGRATIONS.run(connection))
         };
-        match migrated {
-            Ok(()) => Ok(store),
-            Err(MigrateError::VersionMissing(_)) => Err(StoreError::Newer(path.to_owned())),
-            Err(source) => Err(StoreError::Schema { path: path.to_owned(), source }),
-        }
+        migrated.map_err(|source| StoreError::Schema { path: path.to_owned(), source })?;
+        Ok(store)
     }
 
     /// Opens an existing database for reading. One of an earlier version is brought up to date first, which needs to write.
@@ -120,16 +131,10 @@ impl Store {
         if !path.exists() {
             return Err(StoreError::Missing(path.to_owned()));
         }
-        let options = SqliteConnectOptions::new()
-            .filename(path)
-            .read_only(true)
-            .busy_timeout(BUSY_TIMEOUT)
-            .pragma("cache_size", "-65536");
+        let options = reading(path);
         let mut store = Self::connect(path, &options, true)?;
-        match store.is_ours()?.then(|| store.is_current()).transpose()? {
-            None => return Err(StoreError::Foreign(path.to_owned())),
-            Some(true) => return Ok(store),
-            Some(false) => {}
+        if store.is_current()? {
+            return Ok(store);
         }
         store.close()?;
         Self::bring_up_to_date(path, &options)?;
@@ -158,23 +163,18 @@ impl Store {
         Err(cannot(std::io::Error::new(std::io::ErrorKind::WouldBlock, "a run is bringing it up to date")))
     }
 
-    /// Whether the file is new or was made by this program.
-    fn is_ours(&mut self) -> Result<bool, StoreError> {
-        self.drive(async |c| {
-            let sql =
-                "SELECT count(*) AS tables, coalesce(sum(name = '_sqlx_migrations'), 0) AS ours FROM sqlite_schema";
-            let row = sqlx::query(sql).fetch_one(c).await?;
-            Ok(row.try_get::<i64, _>("tables")? == 0 || row.try_get::<i64, _>("ours")? > 0)
-        })
-    }
-
-    /// Whether the schema is that of this program; a newer one is an error.
+    /// Whether the schema is that of this program; not yet that of a new or earlier database. That of a newer version, or of
+    /// something else, is an error.
     fn is_current(&mut self) -> Result<bool, StoreError> {
         let path = self.path.clone();
         self.drive(async |c| {
-            let table = "SELECT count(*) AS tables FROM sqlite_schema WHERE name = '_sqlx_migrations'";
-            if sqlx::query(table).fetch_one(&mut *c).await?.try_get::<i64, _>("tables")? == 0 {
-                return Ok(false);
+            let sql =
+                "SELECT count(*) AS tables, coalesce(sum(name = '_sqlx_migrations'), 0) AS ours FROM sqlite_schema";
+            let row = sqlx::query(sql).fetch_one(&mut *c).await?;
+            match (row.try_get::<i64, _>("tables")?, row.try_get::<i64, _>("ours")?) {
+                (0, _) => return Ok(false),
+                (_, 0) => return Err(StoreError::Foreign(path)),
+                _ => {}
             }
             let sql = "SELECT coalesce(max(version), 0) AS newest FROM _sqlx_migrations WHERE success";
             let newest: i64 = sqlx::query(sql).fetch_one(c).await?.try_get("newest")?;

@@ -15,7 +15,7 @@ use study::Study;
 use crate::lock::RunLock;
 use crate::optima::vote_form;
 use crate::record::now;
-use crate::{PROGRAM_VERSION, PipelineError, Progress};
+use crate::{PROGRAM_VERSION, PipelineError, Progress, open};
 use table::{Kind, Table};
 
 pub use table::Approximation;
@@ -70,8 +70,7 @@ pub fn verify(
         return Err(store::StoreError::Missing(study.database.clone()).into());
     }
     let _lock = RunLock::take(&study.database, wait, progress)?;
-    let mut store = Store::open(&study.database)?;
-    store.belongs_to(&study.name)?;
+    let mut store = open::for_writing(&study)?;
     let (study, grid) = stored_grid(study, &mut store)?;
     let samples = store.samples()?;
     let context = Context {
