@@ -171,15 +171,15 @@ fn cli_a_file_that_looks_as_it_did_is_read_again_only_when_asked() {
     let run = scratch.expect(0, &["run", "--rehash"]);
     assert!(run.stderr.contains("1 read now"), "{}", run.stderr);
     assert!(samples != scratch.query("SELECT passengers FROM sample ORDER BY sample_id"));
-    // Another time alone makes no other content.
-    std::fs::File::options()
-        .write(true)
-        .open(scratch.path(WEATHER))
-        .unwrap()
-        .set_modified(std::time::SystemTime::now())
-        .unwrap();
+    // Another time alone makes no other content, and is known from then on.
+    let earlier = std::time::SystemTime::UNIX_EPOCH + std::time::Duration::from_secs(1_600_000_000);
+    let file = std::fs::File::options().write(true).open(scratch.path(WEATHER)).unwrap();
+    file.set_modified(earlier).unwrap();
     let run = scratch.expect(0, &["run"]);
     assert!(run.stderr.contains("0 read now") && run.stderr.contains("0 new or changed"), "{}", run.stderr);
+    let stamps = "SELECT modified_ns FROM file_stamp JOIN source_file USING (source_file_id) WHERE kind = 'weather'
+        ORDER BY modified_ns LIMIT 1";
+    assert_eq!(scratch.query(stamps), [["1600000000000000000"]]);
 }
 
 #[test]

@@ -84,6 +84,19 @@ impl<'s> Inputs<'s> {
         Ok(files.iter().map(|(label, path)| key((label.clone(), path.as_path()))).collect())
     }
 
+    /// Records how files look now that were read only to find that their content is as it was.
+    pub(crate) fn restamp(&self, store: &mut Store) -> Result<(), PipelineError> {
+        if self.weather.get().is_none() {
+            return Ok(());
+        }
+        for (record, _) in self.records()? {
+            if let Some(stamp) = record.stamp {
+                store.put_stamp(&record.path, &stamp)?;
+            }
+        }
+        Ok(())
+    }
+
     /// The records of all files that samples are joined with, each with its reading key.
     pub(crate) fn records(&self) -> Result<Vec<(FileRecord, String)>, PipelineError> {
         let (_, weather) = self.weather()?;

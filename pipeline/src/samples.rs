@@ -13,6 +13,7 @@ pub(crate) fn join(
     progress: &dyn Progress,
 ) -> Result<(), PipelineError> {
     if !inputs.rehash() && freshness::samples(inputs, store)?.is_none() {
+        inputs.restamp(store)?;
         let samples: u64 = store.months()?.iter().map(|m| m.sample_count).sum();
         let excluded: u64 = store.exclusion_counts()?.iter().map(|e| e.count).sum();
         progress.info(&format!("{samples} samples: 0 new or changed, 0 withdrawn; {excluded} segments excluded"));
