@@ -6,7 +6,7 @@
 use ingest::FileKind;
 use simulate::SIMULATION_VERSION;
 use std::collections::BTreeMap;
-use store::Store;
+use store::{RecordedStage, Store};
 use study::{Study, keys};
 
 use crate::record::input_hash;
@@ -52,7 +52,8 @@ pub(crate) fn samples(inputs: &Inputs, store: &mut Store) -> Result<Option<Stale
 
 /// The optima against study and samples: `None` where they are fresh.
 pub(crate) fn optima(study: &Study, store: &mut Store) -> Result<Option<Stale>, PipelineError> {
-    if store.stage(SOLVE)?.is_some_and(|record| Some(record.key) == solve_key(study, store).ok()) {
+    let key = solve_key(study, store)?;
+    if store.stage(RecordedStage::Solve)?.is_some_and(|record| record.key == key) {
         return Ok(None);
     }
     let stale = |what: String| Some(Stale { what, remedy: "solve" });
@@ -68,11 +69,6 @@ pub(crate) fn optima(study: &Study, store: &mut Store) -> Result<Option<Stale>, 
         open => Ok(stale(format!("the optima are stale: {open} samples have none, or not all"))),
     }
 }
-
-/// Names of stages in their records.
-pub(crate) const SOLVE: &str = "solve";
-pub(crate) const SIMULATE: &str = "simulate";
-pub(crate) const REPORT: &str = "report";
 
 /// Key of all optima of a study: samples, designs and windows in their order.
 pub(crate) fn solve_key(study: &Study, store: &mut Store) -> Result<String, PipelineError> {

@@ -5,7 +5,7 @@
 //! remedy, never computed with in silence. Whoever calls the pipeline, a program or a service, watches it by [`Progress`].
 
 mod backup;
-mod bench;
+mod basis;
 mod canyon;
 mod check;
 mod error;

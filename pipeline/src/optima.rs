@@ -4,20 +4,20 @@ use cabin::{Disturbances, Optimum};
 use ingest::sample::Sample;
 use solve::nlp::{DoorLaw, Effort, Surrogate, VoteForm, nlp_blocks};
 use solve::{Method, solve_blocks};
-use store::{StageRecord, Store, StoredGrid};
+use store::{RecordedStage, StageRecord, Store, StoredGrid};
 use study::Study;
 
-use crate::freshness::{self, SOLVE};
+use crate::freshness;
 use crate::{PipelineError, Progress};
 
 pub(crate) fn solve(study: &Study, store: &mut Store, progress: &dyn Progress) -> Result<(), PipelineError> {
     let key = freshness::solve_key(study, store)?;
     let points = study.grid.points();
-    if store.stage(SOLVE)?.is_some_and(|record| record.key == key) {
+    if store.stage(RecordedStage::Solve)?.is_some_and(|record| record.key == key) {
         progress.info(&format!("0 points computed now (0 samples × {points})"));
         return Ok(());
     }
-    store.reopen_stage(SOLVE)?;
+    store.reopen_stage(RecordedStage::Solve)?;
     let grid = store.put_grid(&study.design_rows, study.grid.windows())?.grid;
     let complete = store.complete_samples(study.grid.points())?;
     let missing: Vec<Sample> = store.samples()?.into_iter().filter(|s| !complete.contains(&s.id)).collect();

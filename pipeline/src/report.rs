@@ -2,12 +2,12 @@
 
 use report::StudyReport;
 use serde::{Deserialize, Serialize};
-use store::{StageRecord, Store};
+use store::{RecordedStage, StageRecord, Store};
 use study::Study;
 use study::assumptions::assumptions;
 
 use crate::files::{make_folder, write_whole};
-use crate::freshness::{self, REPORT};
+use crate::freshness;
 use crate::record::input_hash;
 use crate::{Inputs, PROGRAM_VERSION, PipelineError, Progress};
 
@@ -21,7 +21,7 @@ struct Written {
 /// Writes the report, unless the one that is there is of the same rows, and returns what the study found, in a few lines.
 pub(crate) fn renew(study: &Study, inputs: &Inputs, store: &mut Store) -> Result<Vec<String>, PipelineError> {
     let key = freshness::report_key(study, inputs, store)?;
-    if let Some(record) = store.stage(REPORT)?.filter(|record| record.key == key)
+    if let Some(record) = store.stage(RecordedStage::Report)?.filter(|record| record.key == key)
         && let Ok(written) = serde_json::from_str::<Written>(&record.result)
         && written.files.iter().all(|(name, hash)| {
             std::fs::read(study.report_dir.join(name)).is_ok_and(|b| blake3::hash(&b).to_hex().as_str() == hash)
@@ -31,7 +31,7 @@ pub(crate) fn renew(study: &Study, inputs: &Inputs, store: &mut Store) -> Result
     }
     let written = write(study, store)?;
     let result = serde_json::to_string(&written).expect("names, hashes and lines become JSON");
-    store.complete_stage(REPORT, &StageRecord { key, result })?;
+    store.complete_stage(RecordedStage::Report, &StageRecord { key, result })?;
     Ok(written.headline)
 }
 

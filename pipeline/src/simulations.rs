@@ -5,11 +5,11 @@ use ingest::sample::Sample;
 use rayon::prelude::*;
 use simulate::{Replay, SIMULATION_VERSION};
 use std::collections::BTreeMap;
-use store::{SimulationId, SimulationRow, StageRecord, Store};
+use store::{RecordedStage, SimulationId, SimulationRow, StageRecord, Store};
 use study::{Study, keys};
 
-use crate::bench::{Bench, optima};
-use crate::freshness::{self, SIMULATE};
+use crate::basis::{SimulationBasis, optima};
+use crate::freshness;
 use crate::missions::{MissionInTime, WeatherAndShade, missions};
 use crate::record::input_hash;
 use crate::{Inputs, PipelineError, Progress, traces};
@@ -44,12 +44,12 @@ pub(crate) fn simulate(
         return Err(stale.into());
     }
     let key = freshness::simulate_key(study, inputs, store)?;
-    if let Some(record) = store.stage(SIMULATE)?.filter(|record| record.key == key) {
+    if let Some(record) = store.stage(RecordedStage::Simulate)?.filter(|record| record.key == key) {
         progress.info(&told(study, 0, record.result.parse().unwrap_or(0), 0));
         return Ok(());
     }
-    store.reopen_stage(SIMULATE)?;
-    let bench = Bench {
+    store.reopen_stage(RecordedStage::Simulate)?;
+    let basis = SimulationBasis {
         study,
         grid: store.grid()?,
         views: PassengerViews::new(&study.vehicle),
@@ -58,29 +58,29 @@ pub(crate) fn simulate(
     };
 
     // What the database should hold, and what it holds that it should not.
-    let wanted = bench.keys();
-    let mut known = store.simulation_keys(&bench.grid)?;
-    adopt(&bench, store, &wanted, &mut known)?;
+    let wanted = basis.keys();
+    let mut known = store.simulation_keys(&basis.grid)?;
+    adopt(&basis, store, &wanted, &mut known)?;
     let stale: Vec<SimulationId> =
         known.iter().filter(|(id, key)| wanted.get(*id) != Some(*key)).map(|(id, _)| id.clone()).collect();
-    store.forget_simulations(&bench.grid, &stale)?;
+    store.forget_simulations(&basis.grid, &stale)?;
     let missing = |id: &SimulationId| wanted.get(id).filter(|key| known.get(id) != Some(*key)).cloned();
 
-    progress.begin("simulated", bench.missions.len() as u64);
+    progress.begin("simulated", basis.missions.len() as u64);
     let mut simulated = 0;
-    for chunk in bench.missions.chunks(MISSIONS_A_THREAD * rayon::current_num_threads()) {
+    for chunk in basis.missions.chunks(MISSIONS_A_THREAD * rayon::current_num_threads()) {
         if progress.stop() {
             return Err(PipelineError::Interrupted);
         }
         let mut jobs = Vec::new();
         for samples in chunk {
-            jobs.extend(bench.job(store, samples, &missing)?);
+            jobs.extend(basis.job(store, samples, &missing)?);
         }
-        let rows: Vec<Vec<SimulationRow>> = jobs.par_iter().map(|job| bench.run(job, progress)).collect();
+        let rows: Vec<Vec<SimulationRow>> = jobs.par_iter().map(|job| basis.run(job, progress)).collect();
         let rows = rows.concat();
         simulated += rows.iter().map(|r| r.result.as_ref().map_or(0, Vec::len)).sum::<usize>();
         if !rows.is_empty() {
-            store.put_simulations(&bench.grid, &rows)?;
+            store.put_simulations(&basis.grid, &rows)?;
         }
         progress.advance(chunk.len() as u64);
     }
@@ -88,9 +88,9 @@ pub(crate) fn simulate(
     if progress.stop() {
         return Err(PipelineError::Interrupted);
     }
-    traces::trace(&bench, store, &wanted)?;
-    progress.info(&told(study, simulated, bench.missions.len(), stale.len()));
-    store.complete_simulations(&StageRecord { key, result: bench.missions.len().to_string() })?;
+    traces::trace(&basis, store, &wanted)?;
+    progress.info(&told(study, simulated, basis.missions.len(), stale.len()));
+    store.complete_simulations(&StageRecord { key, result: basis.missions.len().to_string() })?;
     Ok(())
 }
 
@@ -104,7 +104,7 @@ fn told(study: &Study, simulated: usize, missions: usize, stale: usize) -> Strin
     )
 }
 
-impl Bench<'_> {
+impl SimulationBasis<'_> {
     /// What is missing of a mission; `None` where nothing is.
     fn job<'s>(
         &self,
@@ -159,7 +159,7 @@ impl Bench<'_> {
 /// Databases of version 0.1.0 keyed a simulation by its samples' values and by all inputs together. Where that says that nothing
 /// has changed, the simulation gets its new key instead of being computed again.
 fn adopt(
-    bench: &Bench<'_>,
+    basis: &SimulationBasis<'_>,
     store: &mut Store,
     wanted: &BTreeMap<SimulationId, String>,
     known: &mut BTreeMap<SimulationId, String>,
@@ -167,18 +167,15 @@ fn adopt(
     if known.iter().all(|(id, key)| wanted.get(id) == Some(key)) {
         return Ok(());
     }
-    let study = bench.study;
+    let study = basis.study;
     let inputs = input_hash(store)?;
     let dynamics = format!("{:?} {} {SIMULATION_VERSION}", study.dynamics, study.missions.door_open_share);
     let mut same = Vec::new();
-    for samples in &bench.missions {
+    for samples in &basis.missions {
         let values: Vec<String> = samples.iter().map(|s| format!("{} {:?}", s.id, s.disturbances)).collect();
         let mission = keys::hash(&[&values.join(";"), &inputs, &dynamics]);
-        for id in bench.ids(samples) {
-            let w = study.grid.windows()[id.window];
-            let window = format!("{} {}", w.pmv_min(), w.pmv_max());
-            let old = keys::hash(&[&mission, &study.design_rows[id.design].design_key, &window]);
-            if known.get(&id) == Some(&old)
+        for id in basis.ids(samples) {
+            if known.get(&id) == Some(&basis.key(&mission, &id))
                 && let Some(key) = wanted.get(&id)
             {
                 known.insert(id.clone(), key.clone());
@@ -186,5 +183,5 @@ fn adopt(
             }
         }
     }
-    Ok(store.rekey_simulations(&bench.grid, &same)?)
+    Ok(store.rekey_simulations(&basis.grid, &same)?)
 }

@@ -3,10 +3,9 @@
 use chrono::{DateTime, SecondsFormat, Utc};
 use ingest::FileRecord;
 use serde::Serialize;
-use store::{Counts, RunRow, StatusCounts, Store};
+use store::{Counts, RecordedStage, RunRow, StatusCounts, Store};
 use study::Study;
 
-use crate::freshness::SOLVE;
 use crate::{PipelineError, open};
 
 /// What the database holds of a study, in short.
@@ -49,7 +48,7 @@ impl Summary {
 
 /// The points by status, as `solve` counted them when it was last complete, or counted now.
 fn status_counts(store: &mut Store) -> Result<StatusCounts, PipelineError> {
-    let record = store.stage(SOLVE)?;
+    let record = store.stage(RecordedStage::Solve)?;
     let counted: Option<[u64; 3]> = record.and_then(|r| serde_json::from_str(&r.result).ok());
     if let Some([solved, infeasible, not_converged]) = counted {
         return Ok(StatusCounts { solved, infeasible, not_converged });

@@ -8,7 +8,7 @@ use store::{SimulationId, Store, TraceRow};
 use study::Study;
 
 use crate::PipelineError;
-use crate::bench::{Bench, optima};
+use crate::basis::{SimulationBasis, optima};
 use crate::missions::MissionInTime;
 
 /// The missions that the paper shows.
@@ -20,43 +20,43 @@ const LABELS: [&str; 2] = ["cold", "hot"];
 
 /// Stores the traces that are missing; those of other missions go.
 pub(crate) fn trace(
-    bench: &Bench<'_>,
+    basis: &SimulationBasis<'_>,
     store: &mut Store,
     keys: &BTreeMap<SimulationId, String>,
 ) -> Result<(), PipelineError> {
     let stored = store.trace_keys()?;
     let (mut rows, mut kept) = (Vec::new(), Vec::new());
     for (i, label) in LABELS.into_iter().enumerate() {
-        let (Some(samples), Some(window)) = (chosen(&bench.missions, i), shown_window(bench.study, PAPER_LIMITS[i]))
+        let (Some(samples), Some(window)) = (chosen(&basis.missions, i), shown_window(basis.study, PAPER_LIMITS[i]))
         else {
             continue;
         };
-        let design = bench.study.grid.designs().len() - 1;
+        let design = basis.study.grid.designs().len() - 1;
         let id = SimulationId { source_path: samples[0].segment.source_path.clone(), design, window };
         let Some(key) = keys.get(&id) else { continue };
         if stored.iter().any(|(l, k)| l == label && k == key) {
             kept.push(label);
         } else {
-            rows.extend(row(bench, store, samples, label, id, key)?);
+            rows.extend(row(basis, store, samples, label, id, key)?);
         }
     }
-    Ok(store.put_traces(&bench.grid, &rows, &kept)?)
+    Ok(store.put_traces(&basis.grid, &rows, &kept)?)
 }
 
 fn row(
-    bench: &Bench<'_>,
+    basis: &SimulationBasis<'_>,
     store: &mut Store,
     samples: &[Sample],
     label: &'static str,
     id: SimulationId,
     key: &str,
 ) -> Result<Option<TraceRow>, PipelineError> {
-    let study = bench.study;
+    let study = basis.study;
     let loads = store.loads(&id.source_path)?;
-    let Ok(in_time) = MissionInTime::new(study, &bench.views, &bench.surroundings, samples, &loads) else {
+    let Ok(in_time) = MissionInTime::new(study, &basis.views, &basis.surroundings, samples, &loads) else {
         return Ok(None);
     };
-    let Ok(optima) = optima(store, &bench.grid, samples)?[&(id.design, id.window)].clone() else { return Ok(None) };
+    let Ok(optima) = optima(store, &basis.grid, samples)?[&(id.design, id.window)].clone() else { return Ok(None) };
     let segments = in_time.segments(&optima, study.grid.windows()[id.window]);
     let mission = in_time.mission(&segments);
     let mut trace = Trace::default();

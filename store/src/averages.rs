@@ -4,7 +4,7 @@
 use sqlx::sqlite::SqliteConnection;
 
 use crate::row::begin;
-use crate::stages::{StageRecord, record_stage};
+use crate::stages::{RecordedStage, StageRecord, record_stage};
 use crate::{Store, StoreError};
 
 /// The months whose samples, designs or windows have changed.
@@ -174,7 +174,7 @@ impl Store {
             ANNUAL,
             "DELETE FROM stale_month",
         ];
-        self.complete("solve", record, &renew)
+        self.complete(RecordedStage::Solve, record, &renew)
     }
 
     /// Completes the simulations: renews what they come to in the year and by class, and records the stage.
@@ -184,10 +184,15 @@ impl Store {
     pub fn complete_simulations(&mut self, record: &StageRecord) -> Result<(), StoreError> {
         let renew =
             ["DELETE FROM simulation_annual", SIMULATION_ANNUAL, "DELETE FROM simulation_class", SIMULATION_CLASS];
-        self.complete("simulate", record, &renew)
+        self.complete(RecordedStage::Simulate, record, &renew)
     }
 
-    fn complete(&mut self, stage: &str, record: &StageRecord, renew: &[&'static str]) -> Result<(), StoreError> {
+    fn complete(
+        &mut self,
+        stage: RecordedStage,
+        record: &StageRecord,
+        renew: &[&'static str],
+    ) -> Result<(), StoreError> {
         self.drive(async |c| {
             let mut tx = begin(c).await?;
             for &sql in renew {

@@ -212,12 +212,6 @@ impl Store {
         Ok(Self { runtime, connection, path: path.to_owned(), read_only })
     }
 
-    /// The file.
-    #[must_use]
-    pub fn path(&self) -> &Path {
-        &self.path
-    }
-
     /// Reads several things as they are at one moment, whatever is written meanwhile.
     ///
     /// # Errors

@@ -26,7 +26,7 @@ pub use missions::StoredSegment;
 pub use optima::{StatusCounts, StoredOptimum};
 pub use runs::{Counts, RunEnd, RunRow};
 pub use simulations::{SimulatedClass, SimulatedYear, SimulationFailure, SimulationId, SimulationRow};
-pub use stages::StageRecord;
+pub use stages::{RecordedStage, StageRecord};
 pub use traces::{MissionTrace, TraceRow, TraceWindow};
 pub use verification::{CheckRow, VerificationRow};
 pub use views::{AnnualRow, ExclusionCount, LimitShare, MonthRow, MonthlyRow, OptimumRow};

@@ -6,6 +6,28 @@ use sqlx::sqlite::SqliteConnection;
 use crate::row::Insert;
 use crate::{Store, StoreError};
 
+/// A stage that is left out of a run while what it was completed for is as it was.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RecordedStage {
+    /// The optima of all samples.
+    Solve,
+    /// The simulations of all missions.
+    Simulate,
+    /// The files of the report.
+    Report,
+}
+
+impl RecordedStage {
+    /// Its name in the database, which is that of the command.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Solve => "solve",
+            Self::Simulate => "simulate",
+            Self::Report => "report",
+        }
+    }
+}
+
 /// A stage as it was last completed, nothing of which has been withdrawn since.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct StageRecord {
@@ -20,10 +42,10 @@ impl Store {
     ///
     /// # Errors
     /// [`StoreError::Statement`].
-    pub fn stage(&mut self, stage: &str) -> Result<Option<StageRecord>, StoreError> {
+    pub fn stage(&mut self, stage: RecordedStage) -> Result<Option<StageRecord>, StoreError> {
         self.drive(async |c| {
             let sql = "SELECT stage_key, result FROM stage_record WHERE stage = ?";
-            let row = sqlx::query(sql).bind(stage).fetch_optional(c).await?;
+            let row = sqlx::query(sql).bind(stage.name()).fetch_optional(c).await?;
             let record = row.map(|r| Ok(StageRecord { key: r.try_get("stage_key")?, result: r.try_get("result")? }));
             Ok(record.transpose().map_err(|e: sqlx::Error| e)?)
         })
@@ -33,7 +55,7 @@ impl Store {
     ///
     /// # Errors
     /// [`StoreError::Statement`].
-    pub fn complete_stage(&mut self, stage: &str, record: &StageRecord) -> Result<(), StoreError> {
+    pub fn complete_stage(&mut self, stage: RecordedStage, record: &StageRecord) -> Result<(), StoreError> {
         self.drive(async |c| record_stage(c, stage, record).await)
     }
 
@@ -41,9 +63,9 @@ impl Store {
     ///
     /// # Errors
     /// [`StoreError::Statement`].
-    pub fn reopen_stage(&mut self, stage: &str) -> Result<(), StoreError> {
+    pub fn reopen_stage(&mut self, stage: RecordedStage) -> Result<(), StoreError> {
         self.drive(async |c| {
-            sqlx::query("DELETE FROM stage_record WHERE stage = ?").bind(stage).execute(c).await?;
+            sqlx::query("DELETE FROM stage_record WHERE stage = ?").bind(stage.name()).execute(c).await?;
             Ok(())
         })
     }
@@ -60,10 +82,10 @@ impl Store {
 
 pub(crate) async fn record_stage(
     c: &mut SqliteConnection,
-    stage: &str,
+    stage: RecordedStage,
     record: &StageRecord,
 ) -> Result<(), StoreError> {
-    let row = Insert::replacing("stage_record").set("stage", stage)?.set("stage_key", record.key.as_str())?;
+    let row = Insert::replacing("stage_record").set("stage", stage.name())?.set("stage_key", record.key.as_str())?;
     row.set("result", record.result.as_str())?.execute(c).await?;
     Ok(())
 }

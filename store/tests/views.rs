@@ -12,7 +12,7 @@ use ingest::sample::Sample;
 use ingest::{ExcludedSegment, FileKind, FileRecord, FileStamp, Finding, FindingKind};
 use proptest::prelude::*;
 use solve::Method;
-use store::{Counts, DesignRow, RunEnd, StageRecord, Store, StoreError};
+use store::{Counts, DesignRow, RecordedStage, RunEnd, StageRecord, Store, StoreError};
 use tempfile::TempDir;
 
 fn window(limit: f64) -> ComfortWindow {
@@ -285,12 +285,12 @@ fn prop_averages_are_those_of_the_last_complete_stage_and_only_changed_months_ar
     let (_folder, mut store) = scratch();
     filled(&mut store);
     let before = (store.annual().unwrap(), store.monthly().unwrap());
-    assert!(store.stage("solve").unwrap().is_some());
+    assert!(store.stage(RecordedStage::Solve).unwrap().is_some());
     let mut samples = store.samples().unwrap();
     samples[3].disturbances.dhi_w_m2 = 10.0;
     assert_eq!(store.put_samples(&samples, &[], &[]).unwrap(), (1, 0));
     // July's sample has no optima now: the stage is open, the averages are as they were.
-    assert!(store.stage("solve").unwrap().is_none());
+    assert!(store.stage(RecordedStage::Solve).unwrap().is_none());
     assert_eq!(store.query_text("SELECT month FROM stale_month").unwrap(), [["7"]]);
     assert_eq!((store.annual().unwrap(), store.monthly().unwrap()), before);
     let grid = store.grid().unwrap();

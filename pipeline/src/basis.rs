@@ -11,7 +11,7 @@ use crate::PipelineError;
 use crate::missions::{WeatherAndShade, span};
 
 /// What the simulations of a study run on.
-pub(crate) struct Bench<'a> {
+pub(crate) struct SimulationBasis<'a> {
     pub study: &'a Study,
     pub grid: StoredGrid,
     pub views: PassengerViews,
@@ -19,7 +19,7 @@ pub(crate) struct Bench<'a> {
     pub missions: Vec<Vec<Sample>>,
 }
 
-impl Bench<'_> {
+impl SimulationBasis<'_> {
     /// The key of every simulation that the study asks for: samples and optima of the mission, weather and shade in time,
     /// design, window, and how the bus behaves.
     pub fn keys(&self) -> BTreeMap<SimulationId, String> {
@@ -29,13 +29,18 @@ impl Bench<'_> {
             let sample_keys: Vec<&str> = samples.iter().map(|s| s.key.as_str()).collect();
             let mission = keys::hash(&[&sample_keys.join(" "), &self.surroundings.key(span(samples)), &dynamics]);
             for id in self.ids(samples) {
-                let w = self.study.grid.windows()[id.window];
-                let window = format!("{} {}", w.pmv_min(), w.pmv_max());
-                let key = keys::hash(&[&mission, &self.study.design_rows[id.design].design_key, &window]);
+                let key = self.key(&mission, &id);
                 keys.insert(id, key);
             }
         }
         keys
+    }
+
+    /// The key of a simulation of a mission whose own key is given.
+    pub fn key(&self, mission: &str, id: &SimulationId) -> String {
+        let w = self.study.grid.windows()[id.window];
+        let window = format!("{} {}", w.pmv_min(), w.pmv_max());
+        keys::hash(&[mission, &self.study.design_rows[id.design].design_key, &window])
     }
 
     /// What is simulated of a mission, in the order of the study.
