@@ -5,7 +5,6 @@
 mod common;
 
 use common::Scratch;
-use std::io::Write;
 
 const SAMPLES: &str = "SELECT sample_id, mission, segment, start_utc, month, weight, ambient_temperature_c, dni_w_m2,
     dhi_w_m2, passengers, door_open_fraction, solar_altitude_deg, shadow_fraction FROM sample ORDER BY sample_id";
@@ -68,14 +67,8 @@ fn prop_permuting_and_packing_input_files_changes_nothing() {
     scratch.expect(0, &["run"]);
     let (samples, optima) = (scratch.query(SAMPLES), scratch.query(OPTIMA));
 
-    // The missions in a zip, the last one first; the weather in two files, the later half first.
-    let mut zip = zip::ZipWriter::new(std::fs::File::create(scratch.path("missions.zip")).unwrap());
-    for name in scratch.missions().iter().rev() {
-        let deflated = zip::write::SimpleFileOptions::default();
-        zip.start_file(format!("ZTBus/{name}"), deflated).unwrap();
-        zip.write_all(&std::fs::read(scratch.path("ztbus").join(name)).unwrap()).unwrap();
-    }
-    zip.finish().unwrap();
+    // The missions in a zip; the weather in two files, the later half first.
+    scratch.zip_missions("missions.zip");
     let weather = scratch.read("weather/ogd-smn_sma_h_historical_2020-2029.csv");
     let (header, rows) = weather.split_once('\n').unwrap();
     let rows: Vec<&str> = rows.lines().collect();

@@ -62,10 +62,8 @@ pub(crate) fn optima(study: &Study, store: &mut Store) -> Result<Option<Stale>, 
         let what = "the optima are stale: designs, comfort windows, constants or method of the study have changed";
         return Ok(stale(what.to_owned()));
     }
-    let complete = store.complete_samples(study.grid.points())?.len();
-    let samples: u64 = store.months()?.iter().map(|m| m.sample_count).sum();
-    match samples.saturating_sub(complete as u64) {
-        0 => Ok(None),
+    match store.missing_optima(&grid)?.iter().map(|gap| gap.samples.len()).sum() {
+        0_usize => Ok(None),
         open => Ok(stale(format!("the optima are stale: {open} samples have none, or not all"))),
     }
 }

@@ -1,9 +1,9 @@
 //! Missions into the database; one whose content is known is not parsed again.
 
-use ingest::mission::{self, MissionReading, MissionSource};
+use ingest::mission::{self, MissionReading, MissionSource, mission_name};
 use ingest::{FileKind, FileReader, FileRecord, FileStamp, Finding, FindingKind};
 use std::collections::BTreeMap;
-use store::Store;
+use store::{KnownFile, Store};
 use study::{Study, keys};
 
 use crate::in_order::in_order;
@@ -16,6 +16,8 @@ const READERS_A_THREAD: usize = 2;
 /// What a thread has found out about a mission.
 struct Read {
     path: String,
+    /// Where the mission of that content was before; its path, where it has not moved.
+    known_as: Option<String>,
     blake3: String,
     outcome: Outcome,
 }
@@ -39,19 +41,22 @@ pub(crate) fn ingest(
     let wanted: Vec<&MissionSource> =
         found.missions.iter().enumerate().filter(|(i, _)| !overlapping.contains_key(i)).map(|(_, m)| m).collect();
 
+    let before = Before::of(&known);
     let rehash = inputs.rehash();
     progress.begin("missions", wanted.len() as u64);
     let read = |reader: &mut FileReader, source: &&MissionSource| {
         let path = source.path.clone();
-        let of_before = known.get(&path);
+        let of_before = before.find(&known, source);
+        let known_as = of_before.map(|(path, _)| path.clone());
+        let of_before = of_before.map(|(_, file)| file);
         if let Some(file) = of_before.filter(|f| !rehash && f.stamp.is_some() && f.stamp == source.stamp())
             && file.reading_key == keys::mission_key(study, &file.blake3)
         {
-            return Read { path, blake3: file.blake3.clone(), outcome: Outcome::Known(None) };
+            return Read { path, known_as, blake3: file.blake3.clone(), outcome: Outcome::Known(None) };
         }
         let content = match source.load(reader) {
             Ok(content) => content,
-            Err(record) => return Read { path, blake3: String::new(), outcome: Outcome::Unreadable(record) },
+            Err(record) => return Read { path, known_as, blake3: String::new(), outcome: Outcome::Unreadable(record) },
         };
         let key = keys::mission_key(study, &content.blake3);
         let outcome = if of_before.is_some_and(|f| f.reading_key == key) {
@@ -61,41 +66,53 @@ pub(crate) fn ingest(
         };
         let blake3 = content.blake3.clone();
         reader.recycle(content);
-        Read { path, blake3, outcome }
+        Read { path, known_as, blake3, outcome }
     };
     // The first path of every content.
     let mut contents: BTreeMap<String, String> = BTreeMap::new();
     let mut read_now = 0;
-    in_order(&wanted, READERS_A_THREAD * rayon::current_num_threads(), read, |Read { path, blake3, outcome }| {
-        if progress.stop() {
-            return Err(PipelineError::Interrupted);
-        }
-        match (outcome, contents.get(&blake3)) {
-            (Outcome::Unreadable(record), _) => {
-                store.put_file(&record, &refusal_key(&record))?;
-                read_now += 1;
+    in_order(
+        &wanted,
+        READERS_A_THREAD * rayon::current_num_threads(),
+        read,
+        |Read { path, known_as, blake3, outcome }| {
+            if progress.stop() {
+                return Err(PipelineError::Interrupted);
             }
-            (_, Some(first)) => {
-                let message = format!("the same content as {first}, under another name; remove one of them");
-                let finding = Finding::whole(FindingKind::Overlap, message);
-                let record = FileRecord::refused(&path, FileKind::Mission, &blake3, 0, finding);
-                store.put_file(&record, &refusal_key(&record))?;
-            }
-            (outcome, None) => {
-                match outcome {
-                    Outcome::New(reading, key) => {
-                        store.put_mission(&reading, &key)?;
-                        read_now += 1;
-                    }
-                    Outcome::Known(Some(stamp)) => store.put_stamp(&path, &stamp)?,
-                    Outcome::Known(None) | Outcome::Unreadable(_) => {}
+            match (outcome, contents.get(&blake3)) {
+                (Outcome::Unreadable(record), _) => {
+                    store.put_file(&record, &refusal_key(&record))?;
+                    read_now += 1;
                 }
-                contents.insert(blake3, path);
+                (_, Some(first)) => {
+                    let message = format!("the same content as {first}, under another name; remove one of them");
+                    let finding = Finding::whole(FindingKind::Overlap, message);
+                    let record = FileRecord::refused(&path, FileKind::Mission, &blake3, 0, finding);
+                    store.put_file(&record, &refusal_key(&record))?;
+                }
+                (outcome, None) => {
+                    match outcome {
+                        Outcome::New(reading, key) => {
+                            store.put_mission(&reading, &key)?;
+                            read_now += 1;
+                        }
+                        Outcome::Known(stamp) => {
+                            if let Some(from) = known_as.filter(|from| *from != path) {
+                                store.move_file(&from, &path)?;
+                            }
+                            if let Some(stamp) = stamp {
+                                store.put_stamp(&path, &stamp)?;
+                            }
+                        }
+                        Outcome::Unreadable(_) => {}
+                    }
+                    contents.insert(blake3, path);
+                }
             }
-        }
-        progress.advance(1);
-        Ok(())
-    })?;
+            progress.advance(1);
+            Ok(())
+        },
+    )?;
     progress.end();
     let mut paths: Vec<String> = found.missions.iter().map(|m| m.path.clone()).collect();
     for record in overlapping.into_values().chain(found.refused) {
@@ -105,6 +122,28 @@ pub(crate) fn ingest(
     let forgotten = store.keep_files(FileKind::Mission, &paths)?;
     progress.info(&format!("{} missions: {read_now} read now, {forgotten} no longer there", paths.len()));
     Ok(())
+}
+
+/// Where each mission was found before. A mission is known by its name and content: it may lie in another folder now, or in an
+/// archive.
+struct Before<'k> {
+    path_of_name: BTreeMap<&'k str, &'k String>,
+}
+
+impl<'k> Before<'k> {
+    fn of(known: &'k BTreeMap<String, KnownFile>) -> Self {
+        let read = known.iter().filter(|(_, file)| !file.blake3.is_empty());
+        Self { path_of_name: read.map(|(path, _)| (mission_name(path), path)).collect() }
+    }
+
+    fn find(
+        &self,
+        known: &'k BTreeMap<String, KnownFile>,
+        source: &MissionSource,
+    ) -> Option<(&'k String, &'k KnownFile)> {
+        let elsewhere = || self.path_of_name.get(source.name.as_str()).and_then(|path| known.get_key_value(*path));
+        known.get_key_value(&source.path).filter(|(_, file)| !file.blake3.is_empty()).or_else(elsewhere)
+    }
 }
 
 /// Says that samples are to be joined anew, where `ingest` runs alone.

@@ -3,8 +3,9 @@
 use cabin::{Disturbances, Optimum};
 use ingest::sample::Sample;
 use solve::nlp::{DoorLaw, Effort, Surrogate, VoteForm, nlp_blocks};
-use solve::{Method, solve_blocks};
-use store::{RecordedStage, StageRecord, Store, StoredGrid};
+use solve::{Grid, Method, solve_blocks};
+use std::collections::{BTreeMap, BTreeSet};
+use store::{MissingOptima, NewOptimum, RecordedStage, StageRecord, Store, StoredGrid};
 use study::Study;
 
 use crate::freshness;
@@ -19,28 +20,33 @@ pub(crate) fn solve(study: &Study, store: &mut Store, progress: &dyn Progress) -
     }
     store.reopen_stage(RecordedStage::Solve)?;
     let grid = store.put_grid(&study.design_rows, study.grid.windows())?.grid;
-    let complete = store.complete_samples(study.grid.points())?;
-    let missing: Vec<Sample> = store.samples()?.into_iter().filter(|s| !complete.contains(&s.id)).collect();
-    let inputs: Vec<Disturbances> = missing.iter().map(|s| s.disturbances).collect();
+    let gaps = store.missing_optima(&grid)?;
+    let stored: BTreeMap<i64, Sample> = store.samples()?.into_iter().map(|s| (s.id, s)).collect();
 
-    progress.begin("samples", missing.len() as u64);
-    let mut writer = Writer { store, grid: &grid, missing: &missing, progress, total: Total::default(), end: Ok(()) };
-    let (vehicle, wanted) = (&study.vehicle, &study.grid);
-    match vote_form(study) {
-        None => solve_blocks(vehicle, wanted, &inputs, |first, optima| {
-            writer.write(first, optima.iter().map(|o| (o, None)))
-        }),
-        Some(form) => nlp_blocks(vehicle, wanted, &inputs, &form, DoorLaw::Smooth, |first, results| {
-            writer.write(first, results.iter().map(|(o, effort)| (o, Some(*effort))))
-        }),
-    };
+    let samples: usize = gaps.iter().map(|gap| gap.samples.len()).sum();
+    progress.begin("samples", samples as u64);
+    let mut total = Total::default();
+    for gap in &gaps {
+        let wanted = &WantedGrid::of(&study.grid, &gap.points);
+        let inputs: Vec<Disturbances> = gap.samples.iter().map(|id| stored[id].disturbances).collect();
+        let mut writer = Writer { store, grid: &grid, gap, wanted, progress, total: &mut total, end: Ok(()) };
+        match vote_form(study) {
+            None => solve_blocks(&study.vehicle, &wanted.grid, &inputs, |first, optima| {
+                writer.write(first, optima.iter().map(|o| (o, None)))
+            }),
+            Some(form) => {
+                nlp_blocks(&study.vehicle, &wanted.grid, &inputs, &form, DoorLaw::Smooth, |first, results| {
+                    writer.write(first, results.iter().map(|(o, effort)| (o, Some(*effort))))
+                })
+            }
+        };
+        writer.end?;
+    }
     progress.end();
-    let Writer { total, end, .. } = writer;
-    end?;
     let counts = store.status_counts()?;
     let result = serde_json::json!([counts.solved, counts.infeasible, counts.not_converged]).to_string();
     store.complete_optima(&StageRecord { key, result })?;
-    progress.info(&format!("{} points computed now ({} samples × {points})", missing.len() * points, missing.len()));
+    progress.info(&format!("{} points computed now ({samples} samples × {})", total.points, per_sample(&gaps, points)));
     if total.programs > 0 {
         progress.info(&format!(
             "{} nonlinear programs, {:.2} quadratic subproblems each, largest KKT residual {:.1e}",
@@ -61,29 +67,63 @@ pub(crate) fn vote_form(study: &Study) -> Option<VoteForm> {
     }
 }
 
+/// Points a sample, where all samples lack the same ones.
+fn per_sample(gaps: &[MissingOptima], all: usize) -> String {
+    match gaps {
+        [] => all.to_string(),
+        [gap] => gap.points.len().to_string(),
+        _ => format!("up to {all}"),
+    }
+}
+
+/// The part of the study's grid that has all missing points of some samples, and where its designs and windows stand there.
+struct WantedGrid {
+    grid: Grid,
+    designs: Vec<usize>,
+    windows: Vec<usize>,
+}
+
+impl WantedGrid {
+    fn of(study: &Grid, points: &[(usize, usize)]) -> Self {
+        let distinct = |places: &mut dyn Iterator<Item = usize>| {
+            let places: BTreeSet<usize> = places.collect();
+            places.into_iter().collect::<Vec<usize>>()
+        };
+        let designs = distinct(&mut points.iter().map(|p| p.0));
+        let windows = distinct(&mut points.iter().map(|p| p.1));
+        Self { grid: study.part(&designs, &windows), designs, windows }
+    }
+}
+
 /// Takes blocks of optima into the database.
 struct Writer<'a> {
     store: &'a mut Store,
     grid: &'a StoredGrid,
-    missing: &'a [Sample],
+    gap: &'a MissingOptima,
+    wanted: &'a WantedGrid,
     progress: &'a dyn Progress,
-    total: Total,
+    total: &'a mut Total,
     end: Result<(), PipelineError>,
 }
 
 impl Writer<'_> {
-    /// Writes the optima of the missing samples from `first` on; `false` where the work is to end.
+    /// Writes the missing ones among the optima of the samples from `first` on; `false` where the work is to end.
     fn write<'o>(
         &mut self,
         first: usize,
         optima: impl ExactSizeIterator<Item = (&'o Optimum, Option<Effort>)> + Clone,
     ) -> bool {
-        let points = self.grid.designs.len() * self.grid.windows.len();
-        let samples = &self.missing[first..first + optima.len() / points];
-        let ids: Vec<i64> = samples.iter().map(|s| s.id).collect();
+        let points = self.wanted.grid.points();
+        let samples = &self.gap.samples[first..first + optima.len() / points];
         optima.clone().filter_map(|(_, effort)| effort).for_each(|effort| self.total.add(&effort));
-        let keyed = optima.enumerate().map(|(i, (optimum, effort))| (ids[i / points], optimum, effort));
-        self.end = self.store.put_optima(self.grid, &ids, keyed).map_err(PipelineError::from);
+        let (gap, wanted) = (self.gap, self.wanted);
+        let new = optima.enumerate().filter_map(|(i, (optimum, effort))| {
+            let (design, window) = (wanted.designs[optimum.design], wanted.windows[optimum.window]);
+            gap.points.binary_search(&(design, window)).ok()?;
+            Some(NewOptimum { sample_id: samples[i / points], design, window, outcome: &optimum.outcome, effort })
+        });
+        self.end = self.store.put_optima(self.grid, new).map_err(PipelineError::from);
+        self.total.points += samples.len() * gap.points.len();
         self.progress.advance(samples.len() as u64);
         if self.end.is_ok() && self.progress.stop() {
             self.end = Err(PipelineError::Interrupted);
@@ -95,6 +135,7 @@ impl Writer<'_> {
 /// What all points together have cost.
 #[derive(Debug, Default)]
 struct Total {
+    points: usize,
     programs: u64,
     subproblems: u64,
     kkt_residual: f64,

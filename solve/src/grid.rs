@@ -59,6 +59,10 @@ impl Grid {
                 return Err(GridError::WindowTwice(window.pmv_min(), window.pmv_max()));
             }
         }
+        Ok(Self::of(designs, windows))
+    }
+
+    fn of(designs: Vec<Design>, windows: Vec<ComfortWindow>) -> Self {
         let mut votes: Vec<f64> = windows.iter().flat_map(|w| [w.pmv_min(), w.pmv_max()]).collect();
         votes.sort_by(f64::total_cmp);
         votes.dedup();
@@ -70,7 +74,14 @@ impl Grid {
         };
         let limits = votes.iter().map(limit).collect();
         let window_limits = windows.iter().map(|w| (index(w.pmv_min()), index(w.pmv_max()))).collect();
-        Ok(Self { designs, windows, limits, window_limits })
+        Self { designs, windows, limits, window_limits }
+    }
+
+    /// The part of the grid with some of its designs and windows, by their places; at least one of each, none twice.
+    #[must_use]
+    pub fn part(&self, designs: &[usize], windows: &[usize]) -> Self {
+        let designs = designs.iter().map(|&d| self.designs[d].clone()).collect();
+        Self::of(designs, windows.iter().map(|&w| self.windows[w]).collect())
     }
 
     /// The designs in the order given.

@@ -2,8 +2,11 @@
 //!
 //! These are the passive states, without heat from the air unit, and from there outward the states at the limits of the
 //! windows: at lower limits above the passive vote the unit heats, at upper limits below it the unit cools. No other state
-//! is an optimum, so no other is computed. Each walk starts at the passive state and predicts every next state from the
-//! last two.
+//! is an optimum.
+//!
+//! A state is the same to the last bit whatever else the grid asks for, so that optima computed at different times fit
+//! together: the walks go from neutral outward over votes that are fixed, each predicted from the last two, and a limit is
+//! predicted from the fixed votes before it.
 
 use cabin::{Cabin, Heaters, StandardRange, State, Target, Temperatures};
 
@@ -60,43 +63,76 @@ impl States {
     pub fn find(&mut self, cabin: &Cabin<'_>, limits: &[Limit], curtains: [bool; 2]) {
         self.passive = [None; 2];
         self.limits.fill(None);
+        if !curtains.contains(&true) {
+            return;
+        }
+        // One without curtain is where the others start, wanted or not.
         let mut guess = cabin.rough_state(START_K);
-        // The passive states with the least and the largest vote.
-        let mut ends: Option<[State; 2]> = None;
+        // The least and the largest vote of the passive states.
+        let mut ends: Option<[f64; 2]> = None;
         for curtain in [false, true] {
-            if !curtains[usize::from(curtain)] {
+            if curtain && !curtains[1] {
                 continue;
             }
             let Some(state) = cabin.state(Target::Passive { curtain }, self.heaters, &guess) else { continue };
-            self.passive[usize::from(curtain)] = Some(SteadyState::new(cabin, self.heaters, &state));
-            let [mut least, mut largest] = ends.unwrap_or([state; 2]);
-            if state.pmv < least.pmv {
-                least = state;
+            if curtains[usize::from(curtain)] {
+                self.passive[usize::from(curtain)] = Some(SteadyState::new(cabin, self.heaters, &state));
+                let [least, largest] = ends.unwrap_or([state.pmv; 2]);
+                ends = Some([least.min(state.pmv), largest.max(state.pmv)]);
             }
-            if state.pmv > largest.pmv {
-                largest = state;
+            if !curtain {
+                guess = state;
             }
-            ends = Some([least, largest]);
-            guess = state;
         }
         let Some([least, largest]) = ends else { return };
-        let above = limits.partition_point(|l| l.pmv <= least.pmv);
-        let below = limits.partition_point(|l| l.pmv < largest.pmv);
-        self.walk(cabin, limits, least, (above..limits.len()).filter(|&i| limits[i].lower));
-        self.walk(cabin, limits, largest, (0..below).rev().filter(|&i| limits[i].upper));
+        let wanted = |&i: &usize| {
+            let limit = limits[i];
+            limit.lower && limit.pmv > least || limit.upper && limit.pmv < largest
+        };
+        if !(0..limits.len()).any(|i| wanted(&i)) {
+            return;
+        }
+        let Some(neutral) = cabin.state(Target::Vote(0.0), self.heaters, &guess) else { return };
+        let first_warm = limits.partition_point(|l| l.pmv < 0.0);
+        self.walk(cabin, limits, neutral, FIXED_STEP, (first_warm..limits.len()).filter(wanted));
+        self.walk(cabin, limits, neutral, -FIXED_STEP, (0..first_warm).rev().filter(wanted));
     }
 
-    fn walk(&mut self, cabin: &Cabin<'_>, limits: &[Limit], from: State, indices: impl Iterator<Item = usize>) {
-        let (mut before, mut last) = (None, from);
-        for i in indices {
+    /// From neutral outward in fixed steps of the vote, up to the last wanted limit.
+    fn walk(
+        &mut self,
+        cabin: &Cabin<'_>,
+        limits: &[Limit],
+        neutral: State,
+        step: f64,
+        wanted: impl Iterator<Item = usize>,
+    ) {
+        let (mut before, mut last) = (None, neutral);
+        // The fixed vote that was walked to last, and whether `last` is its state.
+        let (mut steps, mut there) = (0.0, true);
+        for i in wanted {
             let pmv = limits[i].pmv;
-            let guess = last.extrapolate(pmv, before.as_ref());
-            let Some(state) = cabin.state(Target::Vote(pmv), self.heaters, &guess) else { continue };
-            self.limits[i] = Some(SteadyState::new(cabin, self.heaters, &state));
-            (before, last) = (Some(last), state);
+            while ((steps + 1.0) * step).abs() <= pmv.abs() {
+                steps += 1.0;
+                let vote = steps * step;
+                let found = cabin.state(Target::Vote(vote), self.heaters, &last.extrapolate(vote, before.as_ref()));
+                there = found.is_some();
+                if let Some(state) = found {
+                    (before, last) = (Some(last), state);
+                }
+            }
+            let state = if there && pmv == steps * step {
+                Some(last)
+            } else {
+                cabin.state(Target::Vote(pmv), self.heaters, &last.extrapolate(pmv, before.as_ref()))
+            };
+            self.limits[i] = state.map(|state| SteadyState::new(cabin, self.heaters, &state));
         }
     }
 }
+
+/// Distance of the fixed votes.
+const FIXED_STEP: f64 = 0.5;
 
 /// Where the search for the first state starts, in K.
 const START_K: f64 = 295.0;

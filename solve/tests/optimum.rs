@@ -188,6 +188,27 @@ fn prop_the_certificate_holds_for_the_paper_and_refuses_what_it_cannot_prove() {
     assert!(matches!(certify(&broken, &all_designs()), Err(CertificateError::Vehicle(_))));
 }
 
+proptest! {
+    #[test]
+    fn prop_an_optimum_is_the_same_to_the_bit_whatever_else_the_grid_has(
+        d in disturbances(),
+        designs in proptest::sample::subsequence((0..all_designs().len()).collect::<Vec<_>>(), 1..=all_designs().len()),
+        windows in proptest::sample::subsequence((0..windows().len() + 2).collect::<Vec<_>>(), 1..4),
+    ) {
+        let odd = [(-0.3, 0.7), (0.1, 2.93)].map(|(low, high)| ComfortWindow::new(low, high).expect("valid"));
+        let grid = Grid::new(all_designs(), common::windows().into_iter().chain(odd).collect()).expect("valid");
+        let vehicle = Vehicle::default();
+        let views = PassengerViews::from_view_factors(&[0.009, 0.013, 0.0142, 0.0165]);
+        let whole = solve(&vehicle, &views, &grid, &d);
+        let part = solve(&vehicle, &views, &grid.part(&designs, &windows), &d);
+        let all_windows = grid.windows().len();
+        for (i, optimum) in part.iter().enumerate() {
+            let (design, window) = (designs[i / windows.len()], windows[i % windows.len()]);
+            prop_assert_eq!(optimum.outcome, whole[design * all_windows + window].outcome);
+        }
+    }
+}
+
 #[test]
 fn prop_the_thread_count_does_not_show() {
     let vehicle = Vehicle::default();

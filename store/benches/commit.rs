@@ -7,7 +7,7 @@ use ingest::mission::Segment;
 use ingest::sample::Sample;
 use ingest::{FileKind, FileRecord};
 use solve::{Method, solve_blocks};
-use store::{DesignRow, Store};
+use store::{DesignRow, NewOptimum, Store};
 use testing::{YEAR_SAMPLES, paper_grid, year};
 
 fn main() {
@@ -73,9 +73,8 @@ fn solve_and_commit(bencher: Bencher) {
     bencher.counter(ItemsCount::new(YEAR_SAMPLES * points)).with_inputs(prepare).bench_local_values(
         |(folder, mut store, stored)| {
             solve_blocks(&vehicle, &grid, &disturbances, |first, optima| {
-                let ids: Vec<i64> = samples[first..first + optima.len() / points].iter().map(|s| s.id).collect();
-                let keyed = optima.iter().enumerate().map(|(i, optimum)| (ids[i / points], optimum, None));
-                store.put_optima(&stored, &ids, keyed).expect("the optima are stored");
+                let new = optima.iter().enumerate().map(|(i, o)| NewOptimum::of(samples[first + i / points].id, o));
+                store.put_optima(&stored, new).expect("the optima are stored");
                 true
             });
             store.close().expect("the log is folded into the file");

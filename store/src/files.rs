@@ -51,6 +51,19 @@ impl Store {
         })
     }
 
+    /// A file that lies elsewhere now, with all that came from it. Whatever was known of its new path is forgotten.
+    ///
+    /// # Errors
+    /// [`StoreError::Statement`].
+    pub fn move_file(&mut self, from: &str, to: &str) -> Result<(), StoreError> {
+        self.drive(async |c| {
+            let mut tx = begin(c).await?;
+            sqlx::query("DELETE FROM source_file WHERE path = ?").bind(to).execute(&mut *tx).await?;
+            sqlx::query("UPDATE source_file SET path = ? WHERE path = ?").bind(to).bind(from).execute(&mut *tx).await?;
+            Ok(tx.commit().await?)
+        })
+    }
+
     /// Puts a file into the database that gives no segments: weather, shade, or one that is refused. A file of the same path
     /// and another reading key is replaced, and with it whatever came from it.
     ///

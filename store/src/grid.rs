@@ -83,7 +83,7 @@ impl Store {
     }
 
     /// Makes the designs and windows of the database exactly these. The optima of a design whose key has changed, and
-    /// of what the study no longer has, go.
+    /// of what the study no longer has, go; a design under a new name keeps them.
     ///
     /// # Errors
     /// [`StoreError::Statement`].
@@ -92,12 +92,14 @@ impl Store {
         self.drive(async |c| {
             let mut change = GridChange::default();
             let mut tx = begin(c).await?;
-            for (row, id) in stored.designs.iter().zip(&stored.design_ids) {
-                if !designs.iter().any(|d| d.name == row.name) {
+            let same = same_designs(&stored.designs, designs);
+            for (i, (row, id)) in stored.designs.iter().zip(&stored.design_ids).enumerate() {
+                if !same.contains(&Some(i)) {
                     sqlx::query("DELETE FROM hvac_design WHERE design_id = ?").bind(id).execute(&mut *tx).await?;
-                    change.removed += 1;
+                    change.removed += u64::from(!designs.iter().any(|d| d.name == row.name));
                 }
             }
+            rename_designs(&mut tx, &stored, designs, &same).await?;
             for (window, id) in stored.windows.iter().zip(&stored.window_ids) {
                 if !windows.contains(window) {
                     sqlx::query("DELETE FROM comfort_window WHERE window_id = ?").bind(id).execute(&mut *tx).await?;
@@ -105,8 +107,7 @@ impl Store {
                 }
             }
             for (position, design) in designs.iter().enumerate() {
-                let same = |row: &DesignRow| row.name == design.name && row.design_key == design.design_key;
-                let id = match stored.designs.iter().position(same) {
+                let id = match same[position] {
                     Some(i) => {
                         let sql = "UPDATE hvac_design SET position = ? WHERE design_id = ?";
                         let id = stored.design_ids[i];
@@ -115,7 +116,7 @@ impl Store {
                     }
                     None => {
                         change.changed_designs.push(design.name.clone());
-                        replace_design(&mut tx, position, design).await?
+                        insert_design(&mut tx, position, design).await?
                     }
                 };
                 change.grid.design_ids.push(id);
@@ -139,8 +140,49 @@ impl Store {
     }
 }
 
-async fn replace_design(c: &mut SqliteConnection, position: usize, design: &DesignRow) -> Result<i64, StoreError> {
-    sqlx::query("DELETE FROM hvac_design WHERE name = ?").bind(&design.name).execute(&mut *c).await?;
+/// For each wanted design the place of the stored one that is the same but for its name: of several, that of its name.
+fn same_designs(stored: &[DesignRow], wanted: &[DesignRow]) -> Vec<Option<usize>> {
+    let key = |i: &usize, design: &DesignRow| stored[*i].design_key == design.design_key;
+    let named = |design: &DesignRow| (0..stored.len()).find(|i| stored[*i].name == design.name && key(i, design));
+    let mut same: Vec<Option<usize>> = wanted.iter().map(named).collect();
+    for (place, design) in wanted.iter().enumerate() {
+        if same[place].is_none() {
+            same[place] = (0..stored.len()).find(|i| key(i, design) && !same.contains(&Some(*i)));
+        }
+    }
+    same
+}
+
+/// Gives stored designs the names of the study; averages go by names, so that all of them are to be renewed.
+async fn rename_designs(
+    c: &mut SqliteConnection,
+    stored: &StoredGrid,
+    wanted: &[DesignRow],
+    same: &[Option<usize>],
+) -> Result<(), StoreError> {
+    let pairs = wanted.iter().zip(same).filter_map(|(design, same)| Some((design, (*same)?)));
+    let renamed: Vec<(i64, &str)> = pairs
+        .filter(|(design, i)| stored.designs[*i].name != design.name)
+        .map(|(design, i)| (stored.design_ids[i], design.name.as_str()))
+        .collect();
+    // First to names that no design has, so that two may exchange theirs.
+    for (id, _) in &renamed {
+        let sql = "UPDATE hvac_design SET name = char(1) || design_id WHERE design_id = ?";
+        sqlx::query(sql).bind(id).execute(&mut *c).await?;
+    }
+    for (id, name) in &renamed {
+        let sql = "UPDATE hvac_design SET name = ? WHERE design_id = ?";
+        sqlx::query(sql).bind(*name).bind(id).execute(&mut *c).await?;
+    }
+    if !renamed.is_empty() {
+        let sql = "INSERT OR IGNORE INTO stale_month
+            VALUES (1), (2), (3), (4), (5), (6), (7), (8), (9), (10), (11), (12)";
+        sqlx::query(sql).execute(&mut *c).await?;
+    }
+    Ok(())
+}
+
+async fn insert_design(c: &mut SqliteConnection, position: usize, design: &DesignRow) -> Result<i64, StoreError> {
     Insert::into("hvac_design")
         .set("name", design.name.as_str())?
         .set("position", position as i64)?

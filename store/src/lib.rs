@@ -23,7 +23,7 @@ pub use connection::{Store, StoreError, lock_path};
 pub use files::KnownFile;
 pub use grid::{DesignRow, GridChange, StoredGrid};
 pub use missions::StoredSegment;
-pub use optima::{StatusCounts, StoredOptimum};
+pub use optima::{MissingOptima, NewOptimum, StatusCounts, StoredOptimum};
 pub use runs::{Counts, RunEnd, RunRow};
 pub use simulations::{SimulatedClass, SimulatedYear, SimulationFailure, SimulationId, SimulationRow};
 pub use stages::{RecordedStage, StageRecord};

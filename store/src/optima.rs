@@ -4,7 +4,7 @@ use cabin::{Devices, Infeasible, OperatingMode, Operation, Optimum, Outcome, Sta
 use solve::nlp::Effort;
 use sqlx::sqlite::{SqliteArguments, SqliteConnection, SqliteRow};
 use sqlx::{Arguments, AssertSqlSafe, Row};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::row::{begin, count, insert_sql};
 use crate::{Store, StoreError, StoredGrid};
@@ -70,16 +70,69 @@ pub struct StoredOptimum {
     pub outcome: Option<Outcome>,
 }
 
+/// Samples that lack the same optima.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct MissingOptima {
+    /// Design and window by their places in the stored grid, in rising order.
+    pub points: Vec<(usize, usize)>,
+    /// The samples' ids in rising order.
+    pub samples: Vec<i64>,
+}
+
+/// An optimum that is to be stored, of a point that has none.
+#[derive(Debug, Clone, Copy)]
+pub struct NewOptimum<'a> {
+    /// Sample.
+    pub sample_id: i64,
+    /// Place of the design in the stored grid.
+    pub design: usize,
+    /// Place of the window in the stored grid.
+    pub window: usize,
+    /// How it ended.
+    pub outcome: &'a Outcome,
+    /// What it has cost, of methods that iterate.
+    pub effort: Option<Effort>,
+}
+
+impl<'a> NewOptimum<'a> {
+    /// An optimum of a grid that is the stored one.
+    #[must_use]
+    pub fn of(sample_id: i64, optimum: &'a Optimum) -> Self {
+        let Optimum { design, window, outcome } = optimum;
+        Self { sample_id, design: *design, window: *window, outcome, effort: None }
+    }
+}
+
 impl Store {
-    /// The samples that have all their `points` optima.
+    /// The optima that are missing of a grid that is the stored one, the samples that lack the same ones together.
     ///
     /// # Errors
     /// [`StoreError::Statement`].
-    pub fn complete_samples(&mut self, points: usize) -> Result<BTreeSet<i64>, StoreError> {
+    pub fn missing_optima(&mut self, grid: &StoredGrid) -> Result<Vec<MissingOptima>, StoreError> {
         self.drive(async |c| {
-            let sql = "SELECT sample_id FROM optimum_point GROUP BY sample_id HAVING count(*) = ?";
-            let rows = sqlx::query(sql).bind(points as i64).fetch_all(c).await?;
-            rows.iter().map(|r| Ok(r.try_get("sample_id")?)).collect()
+            let sql = "SELECT s.sample_id, coalesce(group_concat(p.design_id || ' ' || p.window_id), '') AS present
+                FROM hourly_sample AS s LEFT JOIN optimum_point AS p USING (sample_id)
+                GROUP BY s.sample_id HAVING count(p.sample_id) < ? ORDER BY s.sample_id";
+            let points = grid.designs.len() * grid.windows.len();
+            let mut by_present: BTreeMap<String, Vec<i64>> = BTreeMap::new();
+            for r in sqlx::query(sql).bind(points as i64).fetch_all(c).await? {
+                by_present.entry(r.try_get("present")?).or_default().push(r.try_get("sample_id")?);
+            }
+            let mut missing: BTreeMap<Vec<(usize, usize)>, Vec<i64>> = BTreeMap::new();
+            for (present, mut samples) in by_present {
+                let present: BTreeSet<&str> = present.split(',').collect();
+                let is_missing = |(design, window): &(usize, usize)| {
+                    let ids = format!("{} {}", grid.design_ids[*design], grid.window_ids[*window]);
+                    !present.contains(ids.as_str())
+                };
+                let all = (0..grid.designs.len()).flat_map(|d| (0..grid.windows.len()).map(move |w| (d, w)));
+                missing.entry(all.filter(is_missing).collect()).or_default().append(&mut samples);
+            }
+            let gap = |(points, mut samples): (_, Vec<i64>)| {
+                samples.sort_unstable();
+                MissingOptima { points, samples }
+            };
+            Ok(missing.into_iter().map(gap).collect())
         })
     }
 
@@ -125,26 +178,18 @@ impl Store {
         })
     }
 
-    /// Writes optima of a grid in one transaction, each with its sample; whatever `samples` had of them is replaced. Samples
-    /// in the order of their ids, and within one designs and windows in the order of the grid, append to the table and are
-    /// fastest. Methods that iterate say what a point has cost.
+    /// Writes missing optima of a grid in one transaction. Samples in the order of their ids, and within one designs and
+    /// windows in the order of the grid, append to the table and are fastest.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Statement`], also where a point has its optimum already.
     pub fn put_optima<'a>(
         &mut self,
         grid: &StoredGrid,
-        samples: &[i64],
-        mut points: impl Iterator<Item = (i64, &'a Optimum, Option<Effort>)>,
+        mut points: impl Iterator<Item = NewOptimum<'a>>,
     ) -> Result<(), StoreError> {
         self.drive(async |c| {
             let mut tx = begin(c).await?;
-            // Deleting first leaves plain inserts, which cost less than replacing ones.
-            let ids = samples.iter().map(i64::to_string).collect::<Vec<_>>().join(",");
-            sqlx::query("DELETE FROM optimum_point WHERE sample_id IN (SELECT value FROM json_each(?))")
-                .bind(format!("[{ids}]"))
-                .execute(&mut *tx)
-                .await?;
             let full = insert_statement(ROWS);
             let mut chunk = encode(grid, &mut points)?;
             while chunk.rows > 0 {
@@ -167,15 +212,12 @@ struct Chunk {
     rows: usize,
 }
 
-fn encode<'a>(
-    grid: &StoredGrid,
-    points: &mut impl Iterator<Item = (i64, &'a Optimum, Option<Effort>)>,
-) -> Result<Chunk, StoreError> {
+fn encode<'a>(grid: &StoredGrid, points: &mut impl Iterator<Item = NewOptimum<'a>>) -> Result<Chunk, StoreError> {
     let mut chunk = Chunk::default();
     chunk.arguments.reserve(ROWS * COLUMNS.len(), 0);
-    for (sample_id, optimum, effort) in points.take(ROWS) {
-        let keys = [sample_id, grid.design_ids[optimum.design], grid.window_ids[optimum.window]];
-        add_row(&mut chunk.arguments, keys, &optimum.outcome, effort).map_err(sqlx::Error::Encode)?;
+    for point in points.take(ROWS) {
+        let keys = [point.sample_id, grid.design_ids[point.design], grid.window_ids[point.window]];
+        add_row(&mut chunk.arguments, keys, point.outcome, point.effort).map_err(sqlx::Error::Encode)?;
         chunk.rows += 1;
     }
     Ok(chunk)

@@ -12,7 +12,7 @@ use ingest::sample::Sample;
 use ingest::{ExcludedSegment, FileKind, FileRecord, FileStamp, Finding, FindingKind};
 use proptest::prelude::*;
 use solve::Method;
-use store::{Counts, DesignRow, RecordedStage, RunEnd, StageRecord, Store, StoreError};
+use store::{Counts, DesignRow, MissingOptima, NewOptimum, RecordedStage, RunEnd, StageRecord, Store, StoreError};
 use tempfile::TempDir;
 
 fn window(limit: f64) -> ComfortWindow {
@@ -163,7 +163,7 @@ fn filled(store: &mut Store) {
             points.push((sample.id, optimum));
         }
     }
-    store.put_optima(&change.grid, &[], points.iter().map(|(id, optimum)| (*id, optimum, None))).unwrap();
+    store.put_optima(&change.grid, points.iter().map(|(id, optimum)| NewOptimum::of(*id, optimum))).unwrap();
     assert!(store.annual().unwrap().is_empty(), "averages show before the stage is complete");
     store.complete_optima(&StageRecord { key: "k".to_owned(), result: "[]".to_owned() }).unwrap();
     let stored = store.optima(&change.grid, 1, 4).unwrap();
@@ -259,7 +259,11 @@ fn prop_samples_become_exactly_those_given_and_equal_ones_keep_their_optima() {
     assert_eq!(store.put_samples(&samples, &[], &[]).unwrap(), (1, 1));
     let left = store.query_text("SELECT DISTINCT sample_id FROM optimum ORDER BY sample_id").unwrap();
     assert_eq!(left, [["2"], ["3"]]);
-    assert_eq!(store.complete_samples(2).unwrap().into_iter().collect::<Vec<_>>(), [2, 3]);
+    let grid = store.grid().unwrap();
+    assert_eq!(
+        store.missing_optima(&grid).unwrap(),
+        [MissingOptima { points: vec![(0, 0), (1, 0)], samples: vec![1] }]
+    );
     assert!(store.exclusion_counts().unwrap().is_empty());
     let stranger = sample(9, "nowhere", 1);
     assert!(matches!(store.put_samples(&[stranger], &[], &[]), Err(StoreError::UnknownFile(_))));
@@ -276,8 +280,24 @@ fn prop_a_changed_design_alone_loses_its_optima() {
     assert_eq!(change.changed_designs, ["hp"]);
     let left = store.query_text("SELECT design, count(*) FROM optimum GROUP BY design").unwrap();
     assert_eq!(left, [["ptc", "4"]]);
+    let gaps = store.missing_optima(&change.grid).unwrap();
+    assert_eq!(gaps, [MissingOptima { points: vec![(0, 0)], samples: vec![1, 2, 3, 4] }]);
     assert_eq!(store.put_grid(&[design("ptc", "x")], &[window(0.5)]).unwrap().removed, 2);
     assert_eq!(store.query_text("SELECT count(*) FROM optimum").unwrap(), [["0"]]);
+}
+
+#[test]
+fn prop_a_renamed_design_keeps_its_optima() {
+    let (_folder, mut store) = scratch();
+    filled(&mut store);
+    // Two designs that exchange their names, too.
+    let swapped = store.put_grid(&[design("ptc", "y"), design("hp", "x")], &[window(1.0)]).unwrap();
+    assert!(swapped.changed_designs.is_empty() && swapped.removed == 0);
+    assert!(store.missing_optima(&swapped.grid).unwrap().is_empty());
+    assert_eq!(store.grid().unwrap(), swapped.grid);
+    let powers = "SELECT design, hvac_power_w FROM optimum WHERE sample_id = 1 ORDER BY design";
+    assert_eq!(store.query_text(powers).unwrap(), [["hp", "1000.0"], ["ptc", "500.0"]]);
+    assert_eq!(store.query_text("SELECT count(*) FROM stale_month").unwrap(), [["12"]]);
 }
 
 #[test]
@@ -295,7 +315,7 @@ fn prop_averages_are_those_of_the_last_complete_stage_and_only_changed_months_ar
     assert_eq!((store.annual().unwrap(), store.monthly().unwrap()), before);
     let grid = store.grid().unwrap();
     let optima = [0, 1].map(|d| (4, solved(d, OperatingMode::Cooling, 700.0)));
-    store.put_optima(&grid, &[4], optima.iter().map(|(id, o)| (*id, o, None))).unwrap();
+    store.put_optima(&grid, optima.iter().map(|(id, o)| NewOptimum::of(*id, o))).unwrap();
     store.complete_optima(&StageRecord { key: "k2".to_owned(), result: "[]".to_owned() }).unwrap();
     let monthly: Vec<_> = store.monthly().unwrap().iter().map(|m| m.hvac_power_w).collect();
     assert_eq!(monthly, [2000.0, 700.0, 750.0, 700.0].map(Some));

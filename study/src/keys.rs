@@ -1,6 +1,6 @@
 //! Keys: what a stored thing was made from, as BLAKE3 hashes that do not depend on place, time or layout of a file.
 
-use cabin::Vehicle;
+use cabin::{ComfortWindow, Vehicle};
 use solve::Method;
 use store::DesignRow;
 
@@ -31,11 +31,18 @@ pub(crate) fn study_hash(file: &StudyFile) -> String {
     hash(&[&canonical(file)])
 }
 
-/// Key of the optima of a design, besides sample and window: equipment, constants of the bus, method.
-pub(crate) fn design_key(row: &DesignRow, vehicle: &Vehicle, method: Method) -> String {
+/// Key of the optima of a design, besides sample and window: equipment, constants of the bus, method. A window of the
+/// nonlinear programs starts from the one before it, so that all of them belong to the key there.
+pub(crate) fn design_key(row: &DesignRow, vehicle: &Vehicle, method: Method, windows: &[ComfortWindow]) -> String {
     let devices = row.devices;
     let rest = format!("{} {} {} {}", devices.radiant_heaters, devices.air_curtain, method.name(), method.version());
-    hash(&[row.heating.name(), &row.heating_cop, &row.cooling_cop, &rest, &canonical(vehicle)])
+    let vehicle = canonical(vehicle);
+    let mut parts = vec![row.heating.name(), &row.heating_cop, &row.cooling_cop, &rest, &vehicle];
+    let neighbours: Vec<String> = windows.iter().map(|w| format!("{} {}", w.pmv_min(), w.pmv_max())).collect();
+    if method != Method::Fast {
+        parts.extend(neighbours.iter().map(String::as_str));
+    }
+    hash(&parts)
 }
 
 /// Key of the reading of a mission: its content, and how segments are made of it.

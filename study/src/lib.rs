@@ -139,7 +139,7 @@ impl Study {
     #[must_use]
     pub fn solved_by(mut self, method: Method) -> Self {
         for row in &mut self.design_rows {
-            row.design_key = keys::design_key(row, &self.vehicle, method);
+            row.design_key = keys::design_key(row, &self.vehicle, method, self.grid.windows());
             row.method = method;
         }
         self.method = method;

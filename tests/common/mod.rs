@@ -5,6 +5,7 @@
 
 use assert_cmd::Command;
 use sqlx::{Connection, SqliteConnection};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use store::Store;
 use tempfile::TempDir;
@@ -81,6 +82,17 @@ impl Scratch {
         names.retain(|n| n.starts_with('B'));
         names.sort();
         names
+    }
+
+    /// Packs the missions into an archive beside them, the last one first.
+    pub fn zip_missions(&self, name: &str) {
+        let mut zip = zip::ZipWriter::new(std::fs::File::create(self.path(name)).unwrap());
+        for name in self.missions().iter().rev() {
+            let deflated = zip::write::SimpleFileOptions::default();
+            zip.start_file(format!("ZTBus/{name}"), deflated).unwrap();
+            zip.write_all(&std::fs::read(self.path("ztbus").join(name)).unwrap()).unwrap();
+        }
+        zip.finish().unwrap();
     }
 
     pub fn query(&self, sql: &str) -> Vec<Vec<String>> {

@@ -146,6 +146,13 @@ impl Discovery {
     }
 }
 
+/// Name of the mission that a path of a [`MissionSource`] leads to: that of its file without the extension.
+#[must_use]
+pub fn mission_name(path: &str) -> &str {
+    let file = path.rsplit(['/', '!']).next().unwrap_or(path);
+    file.rsplit_once('.').map_or(file, |(stem, _)| stem)
+}
+
 /// Bus, first and last second from `B183_2021-07-26_03-53-27_2021-07-26_07-18-47`.
 fn parse_name(stem: &str) -> Result<(u32, DateTime<Utc>, DateTime<Utc>), String> {
     let parsed = || {

@@ -11,7 +11,7 @@ use crate::telemetry::{TIME, Telemetry};
 use crate::{Content, ExcludedSegment, ExclusionReason, FileKind, FileRecord, Finding, FindingKind};
 use rows::Reader;
 
-pub use discover::{Discovery, MissionSource, discover, overlaps};
+pub use discover::{Discovery, MissionSource, discover, mission_name, overlaps};
 
 /// Share of a segment's seconds that may be without telemetry.
 const MAX_MISSING_SHARE: f64 = 0.01;

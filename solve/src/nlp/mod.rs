@@ -20,5 +20,5 @@ pub use sqp::{Ended, KKT_TOLERANCE};
 pub use surrogate::{SURROGATE_VERSION, Surrogate};
 pub use vote::VoteForm;
 
-/// Version of the method: it changes whenever a stored optimum would, beyond rounding, come out differently.
-pub const NLP_VERSION: u32 = 1;
+/// Version of the method: it changes whenever a bit of a stored optimum would come out differently.
+pub const NLP_VERSION: u32 = 2;

@@ -52,10 +52,10 @@ impl<'a> NlpSolver<'a> {
     /// Solves every design and window for one sample, in the order of [`crate::SampleSolver::solve`]. A window starts from
     /// the one before it; the first from nothing.
     pub fn solve(&mut self, disturbances: &Disturbances, results: &mut [(Optimum, Effort)]) {
-        // A solver scales by the first numbers it sees; a new one a sample keeps results free of what came before.
-        self.quadratic = Quadratic::new();
         let windows = self.grid.windows().len();
         for (design, results) in results.chunks_mut(windows).enumerate() {
+            // A solver scales by the first numbers it sees; a new one keeps a design's results free of what came before.
+            self.quadratic = Quadratic::new();
             self.solve_design(disturbances, design, results);
         }
     }
