@@ -17,10 +17,10 @@ pub enum Ending {
 #[derive(Debug, thiserror::Error)]
 pub enum Failure {
     /// The command line or the study file is wrong: exit status 2.
-    #[error("{0:#}")]
+    #[error("{}", said_once(.0))]
     Usage(anyhow::Error),
     /// Inputs or database cannot be used: exit status 3.
-    #[error("{0:#}")]
+    #[error("{}", said_once(.0))]
     Inputs(anyhow::Error),
     /// A signal came: exit status 4.
     #[error(transparent)]
@@ -28,6 +28,18 @@ pub enum Failure {
     /// Another run is at work: exit status 5.
     #[error(transparent)]
     Busy(PipelineError),
+}
+
+/// An error with its causes, of which a library's message may speak already.
+fn said_once(error: &anyhow::Error) -> String {
+    let mut text = String::new();
+    for cause in error.chain().map(ToString::to_string) {
+        if !text.contains(&cause) {
+            let joint = if text.is_empty() { "" } else { ": " };
+            text = text + joint + &cause;
+        }
+    }
+    text
 }
 
 impl Ending {

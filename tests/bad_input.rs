@@ -122,6 +122,7 @@ fn cli_unusable_inputs_end_with_3_and_say_what_to_do() {
     scratch.write("shadow.csv", shadow.replacen("1.0000", "1.5000", 1));
     let run = scratch.expect(3, &["run"]);
     assert!(run.stderr.contains("shadow.csv: line 2, column shadow_fraction: \"1.5000\""), "{}", run.stderr);
+    assert_eq!(run.stderr.matches("1.5000").count(), 1, "{}", run.stderr);
     scratch.write("shadow.csv", shadow);
 
     let weather = "weather/ogd-smn_sma_h_historical_2020-2029.csv";

@@ -10,6 +10,7 @@ mod canyon;
 mod check;
 mod error;
 mod files;
+mod folder;
 mod freshness;
 mod in_order;
 mod ingest;

@@ -1,15 +1,18 @@
 //! The report: rows of the database onto the disk. No input is read.
 
-use report::StudyReport;
+use report::{ReportFile, StudyReport};
 use serde::{Deserialize, Serialize};
+use std::time::Duration;
 use store::{RecordedStage, StageRecord, Store};
 use study::Study;
 use study::assumptions::assumptions;
 
-use crate::files::{make_folder, write_whole};
-use crate::freshness;
+use crate::lock::RunLock;
 use crate::record::input_hash;
-use crate::{Inputs, PROGRAM_VERSION, PipelineError, Progress};
+use crate::{Inputs, PROGRAM_VERSION, PipelineError, Progress, folder, freshness};
+
+/// How long another report may take that is being written to the same folder.
+const LONGEST_REPORT: Duration = Duration::from_secs(60);
 
 /// What a report that was written came to: its files with their hashes, and the study's findings in a few lines.
 #[derive(Serialize, Deserialize)]
@@ -19,37 +22,52 @@ struct Written {
 }
 
 /// Writes the report, unless the one that is there is of the same rows, and returns what the study found, in a few lines.
-pub(crate) fn renew(study: &Study, inputs: &Inputs, store: &mut Store) -> Result<Vec<String>, PipelineError> {
+pub(crate) fn renew(
+    study: &Study,
+    inputs: &Inputs,
+    store: &mut Store,
+    progress: &dyn Progress,
+) -> Result<Vec<String>, PipelineError> {
     let key = freshness::report_key(study, inputs, store)?;
     if let Some(record) = store.stage(RecordedStage::Report)?.filter(|record| record.key == key)
         && let Ok(written) = serde_json::from_str::<Written>(&record.result)
-        && written.files.iter().all(|(name, hash)| {
-            std::fs::read(study.report_dir.join(name)).is_ok_and(|b| blake3::hash(&b).to_hex().as_str() == hash)
-        })
+        && report::FILES.iter().all(|name| is_as_written(study, &written, name))
     {
         return Ok(written.headline);
     }
-    let written = write(study, store)?;
+    let written = write(study, store, progress)?;
     let result = serde_json::to_string(&written).expect("names, hashes and lines become JSON");
     store.complete_stage(RecordedStage::Report, &StageRecord { key, result })?;
     Ok(written.headline)
 }
 
-/// Writes the report and returns what the study found, in a few lines.
-pub(crate) fn report(study: &Study, store: &mut Store) -> Result<Vec<String>, PipelineError> {
-    Ok(write(study, store)?.headline)
+/// Whether a file that a report can have is there as it was written, or not there as it was not.
+fn is_as_written(study: &Study, written: &Written, name: &str) -> bool {
+    let path = study.report_dir.join(name);
+    match written.files.iter().find(|(other, _)| other == name) {
+        Some((_, hash)) => std::fs::read(path).is_ok_and(|b| blake3::hash(&b).to_hex().as_str() == hash),
+        None => !path.exists(),
+    }
 }
 
-fn write(study: &Study, store: &mut Store) -> Result<Written, PipelineError> {
+/// Writes the report and returns what the study found, in a few lines.
+pub(crate) fn report(study: &Study, store: &mut Store, progress: &dyn Progress) -> Result<Vec<String>, PipelineError> {
+    Ok(write(study, store, progress)?.headline)
+}
+
+fn write(study: &Study, store: &mut Store, progress: &dyn Progress) -> Result<Written, PipelineError> {
     let content = store.at_one_moment(|store| content(study, store))?;
     let files = report::render(&content)?;
-    make_folder(&study.report_dir)?;
-    let mut written = Written { files: Vec::new(), headline: report::headline(&content) };
-    for file in files {
-        write_whole(&study.report_dir.join(file.name), &file.bytes)?;
-        written.files.push((file.name.to_owned(), blake3::hash(&file.bytes).to_hex().to_string()));
-    }
-    Ok(written)
+    // Where no lock can be had, the folder above is not ours to write, and no folder is exchanged either.
+    let _lock = match RunLock::take(&study.report_dir, LONGEST_REPORT, progress) {
+        Err(PipelineError::Write { .. }) => None,
+        lock => Some(lock?),
+    };
+    let bytes: Vec<(&str, &[u8])> = files.iter().map(|file| (file.name, file.bytes.as_slice())).collect();
+    folder::replace(&study.report_dir, &bytes, &report::FILES, &study.database)
+        .map_err(|source| PipelineError::Write { path: study.report_dir.clone(), source })?;
+    let hashed = |file: &ReportFile| (file.name.to_owned(), blake3::hash(&file.bytes).to_hex().to_string());
+    Ok(Written { files: files.iter().map(hashed).collect(), headline: report::headline(&content) })
 }
 
 /// Says where the report is of something else than the inputs as they are now. Inputs that are gone say nothing.

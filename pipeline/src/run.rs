@@ -84,9 +84,9 @@ pub fn run(study: &Study, stages: &[Stage], options: Options, progress: &dyn Pro
         Stage::Report => {
             let lines = if only_report {
                 report::say_stale(study, &inputs, &mut store, progress)?;
-                report::report(study, &mut store)
+                report::report(study, &mut store, progress)
             } else {
-                report::renew(study, &inputs, &mut store)
+                report::renew(study, &inputs, &mut store, progress)
             };
             lines.map(|lines| headline = lines)
         }

@@ -34,7 +34,8 @@ pub(crate) fn trace(
         let design = basis.study.grid.designs().len() - 1;
         let id = SimulationId { source_path: samples[0].segment.source_path.clone(), design, window };
         let Some(key) = keys.get(&id) else { continue };
-        if stored.iter().any(|(l, k)| l == label && k == key) {
+        let name = &basis.study.design_rows[design].name;
+        if stored.iter().any(|[l, d, k]| l == label && d == name && k == key) {
             kept.push(label);
         } else {
             rows.extend(row(basis, store, samples, label, id, key)?);

@@ -29,6 +29,23 @@ pub struct ReportFile {
     pub bytes: Vec<u8>,
 }
 
+/// The names of all files that a report can have.
+pub const FILES: [&str; 13] = [
+    "report.md",
+    "annual_average.csv",
+    "data_quality.csv",
+    "mission_cold.svg",
+    "mission_hot.svg",
+    "monthly_average.csv",
+    "paper_comparison.csv",
+    "pareto.svg",
+    "simulated_pareto.svg",
+    "simulation_annual.csv",
+    "simulation_classes.csv",
+    "simulation_failures.csv",
+    "sources.csv",
+];
+
 /// The report could not be made.
 #[derive(Debug, thiserror::Error)]
 pub enum ReportError {

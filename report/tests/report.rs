@@ -77,6 +77,7 @@ fn five() -> StudyReport {
 
 fn file(study: &StudyReport, name: &str) -> String {
     let files = render(study).unwrap();
+    assert!(files.iter().all(|file| report::FILES.contains(&file.name)));
     String::from_utf8(files.into_iter().find(|f| f.name == name).unwrap().bytes).unwrap()
 }
 

@@ -1,5 +1,5 @@
 //! Averages of the last complete stage: renewed in the transaction that completes it, so that readers never see one of a
-//! half-computed study.
+//! half-computed study. Sums go by missions and months, not by the ids of rows, which tell in what order things came.
 
 use sqlx::sqlite::SqliteConnection;
 
@@ -89,9 +89,9 @@ WITH monthly AS (
         pmv_max,
         controller,
         month,
-        sum(mean_hvac_power_w * seconds) / sum(seconds) AS power_w,
-        sum(static_mean_hvac_power_w * seconds) / sum(seconds) AS static_power_w,
-        sum(saturated_fraction * seconds) / sum(seconds) AS saturated_fraction,
+        sum(mean_hvac_power_w * seconds ORDER BY mission) / sum(seconds) AS power_w,
+        sum(static_mean_hvac_power_w * seconds ORDER BY mission) / sum(seconds) AS static_power_w,
+        sum(saturated_fraction * seconds ORDER BY mission) / sum(seconds) AS saturated_fraction,
         count(*) AS mission_count
     FROM simulation
     GROUP BY design, pmv_min, pmv_max, controller, month
@@ -102,9 +102,9 @@ SELECT
     m.pmv_min,
     m.pmv_max,
     m.controller,
-    sum(m.power_w * w.days) / sum(w.days),
-    sum(m.static_power_w * w.days) / sum(w.days),
-    sum(m.saturated_fraction * w.days) / sum(w.days),
+    sum(m.power_w * w.days ORDER BY month) / sum(w.days),
+    sum(m.static_power_w * w.days ORDER BY month) / sum(w.days),
+    sum(m.saturated_fraction * w.days ORDER BY month) / sum(w.days),
     sum(m.mission_count),
     coalesce((SELECT max(run_id) FROM run), 0)
 FROM monthly AS m
@@ -116,6 +116,7 @@ WITH classed AS (
     SELECT
         r.design_id,
         r.window_id,
+        r.mission,
         r.mean_hvac_power_w,
         r.static_mean_hvac_power_w,
         r.max_abs_pmv_15min,
@@ -150,11 +151,11 @@ SELECT
     a.class,
     a.sorting * 100 + a.place AS class_order,
     count(*) AS mission_count,
-    sum(a.mean_hvac_power_w * a.seconds) / sum(a.seconds) AS mean_hvac_power_w,
-    sum(a.static_mean_hvac_power_w * a.seconds) / sum(a.seconds) AS static_mean_hvac_power_w,
-    sum(a.warm_w * a.seconds) / sum(a.seconds) AS warm_start_power_w,
-    avg(a.max_abs_pmv_15min) AS mean_max_abs_pmv_15min,
-    sum(a.saturated_fraction * a.seconds) / sum(a.seconds),
+    sum(a.mean_hvac_power_w * a.seconds ORDER BY a.mission) / sum(a.seconds) AS mean_hvac_power_w,
+    sum(a.static_mean_hvac_power_w * a.seconds ORDER BY a.mission) / sum(a.seconds) AS static_mean_hvac_power_w,
+    sum(a.warm_w * a.seconds ORDER BY a.mission) / sum(a.seconds) AS warm_start_power_w,
+    avg(a.max_abs_pmv_15min ORDER BY a.mission) AS mean_max_abs_pmv_15min,
+    sum(a.saturated_fraction * a.seconds ORDER BY a.mission) / sum(a.seconds),
     coalesce((SELECT max(run_id) FROM run), 0)
 FROM all_classed AS a
 JOIN hvac_design AS d USING (design_id)

@@ -23,13 +23,6 @@ impl Store {
         self.drive(async |c| {
             let mut tx = begin(c).await?;
             let id = replace_file(&mut tx, &reading.file, reading_key).await?;
-            // What an earlier reading of the mission led to is void.
-            let mut missions =
-                reading.segments.iter().map(|s| &s.mission).chain(reading.excluded.iter().map(|e| &e.mission));
-            if let Some(mission) = missions.next() {
-                let sql = "DELETE FROM excluded_segment WHERE mission = ?";
-                sqlx::query(sql).bind(mission).execute(&mut *tx).await?;
-            }
             for segment in &reading.segments {
                 insert_segment(&mut tx, id, segment).await?;
             }

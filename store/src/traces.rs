@@ -61,13 +61,14 @@ pub struct TraceWindow {
 }
 
 impl Store {
-    /// The key of each stored trace's simulation, by label.
+    /// Label, design and key of the simulation of each stored trace.
     ///
     /// # Errors
     /// [`StoreError::Statement`].
-    pub fn trace_keys(&mut self) -> Result<Vec<(String, String)>, StoreError> {
-        let sql = "SELECT label, simulation_key FROM mission_trace ORDER BY label";
-        self.select(sql, |r| Ok((r.try_get("label")?, r.try_get("simulation_key")?)))
+    pub fn trace_keys(&mut self) -> Result<Vec<[String; 3]>, StoreError> {
+        let sql = "SELECT t.label, d.name, t.simulation_key
+            FROM mission_trace AS t JOIN hvac_design AS d USING (design_id) ORDER BY t.label";
+        self.select(sql, |r| Ok([r.try_get("label")?, r.try_get("name")?, r.try_get("simulation_key")?]))
     }
 
     /// Makes the traces of the database exactly these labels': `rows` are new, those of the labels in `kept` stay.

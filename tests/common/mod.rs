@@ -3,8 +3,10 @@
 #![expect(clippy::unwrap_used, reason = "a test ends where something is not as expected")]
 #![allow(dead_code, reason = "every test file uses its own part of these")]
 
+pub mod world;
+
 use assert_cmd::Command;
-use sqlx::{Connection, SqliteConnection};
+use sqlx::{Column, Connection, Row, SqliteConnection, TypeInfo, ValueRef};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use store::Store;
@@ -97,6 +99,29 @@ impl Scratch {
 
     pub fn query(&self, sql: &str) -> Vec<Vec<String>> {
         Store::open_read_only(&self.path("study.db")).unwrap().query_text(sql).unwrap()
+    }
+
+    /// The rows of a query to the last bit, in a sorted order of their own.
+    pub fn exact(&self, sql: &str) -> Vec<String> {
+        let url = format!("sqlite://{}?mode=ro", self.path("study.db").display());
+        let runtime = tokio::runtime::Builder::new_current_thread().enable_time().build().unwrap();
+        let rows = runtime.block_on(async {
+            let mut connection = SqliteConnection::connect(&url).await.unwrap();
+            sqlx::query(sqlx::AssertSqlSafe(sql.to_owned())).fetch_all(&mut connection).await.unwrap()
+        });
+        let value = |row: &sqlx::sqlite::SqliteRow, i: usize| {
+            let raw = row.try_get_raw(i).unwrap();
+            let name = row.column(i).name();
+            match raw.type_info().name() {
+                "REAL" => format!("{name}={:?}", row.get_unchecked::<f64, _>(i)),
+                _ if raw.is_null() => format!("{name}=-"),
+                _ => format!("{name}={}", row.get_unchecked::<String, _>(i)),
+            }
+        };
+        let mut lines: Vec<String> =
+            rows.iter().map(|row| (0..row.len()).map(|i| value(row, i)).collect::<Vec<_>>().join(" ")).collect();
+        lines.sort_unstable();
+        lines
     }
 
     /// Changes the database behind the program's back.
