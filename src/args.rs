@@ -8,8 +8,9 @@ const MOST_THREADS: i64 = 1024;
 
 /// What thermal comfort in an electric city bus costs over a whole year.
 ///
-/// Exit status: 0 done; 1 finished, but points stayed unsolved or inputs were refused; 2 usage or study file wrong;
-/// 3 inputs or database unusable; 4 interrupted, run again to resume; 5 another run is at work on the database.
+/// Exit status: 0 done; 1 finished, but points stayed unsolved, inputs were refused or expected data is missing; 2 usage or
+/// study file wrong; 3 inputs or database unusable; 4 interrupted, run again to resume; 5 another run is at work on the
+/// database; 6 the database is not complete: points are pending, or the last run was interrupted or failed.
 #[derive(Debug, Parser)]
 #[command(version, max_term_width = 100)]
 pub struct Args {
@@ -31,6 +32,10 @@ pub struct Args {
     /// How long to wait for another run on the same database.
     #[arg(long, global = true, value_name = "SECONDS", default_value_t = 0)]
     pub wait: u64,
+
+    /// Write what a run came to as metrics to this file (OpenMetrics; name it *.prom for the node exporter).
+    #[arg(long, global = true, value_name = "FILE")]
+    pub metrics: Option<PathBuf>,
 
     /// Threads that compute; as many as cores without it. Results do not depend on it.
     #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]

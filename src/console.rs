@@ -2,7 +2,7 @@
 
 use anyhow::{Context, anyhow};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use pipeline::Progress;
+use pipeline::{Done, Progress, StageEnd, Work};
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::flag;
 use std::fmt;
@@ -51,6 +51,7 @@ impl Write for LogSink {
 
 /// What goes to stderr.
 pub struct Console {
+    log: Log,
     bars: bool,
     bar: Mutex<ProgressBar>,
 }
@@ -64,11 +65,21 @@ impl Console {
             Log::Json => lines.json().flatten_event(true).init(),
         }
         let bars = !quiet && log == Log::Text && stderr().is_terminal();
-        Self { bars, bar: Mutex::new(ProgressBar::hidden()) }
+        Self { log, bars, bar: Mutex::new(ProgressBar::hidden()) }
     }
 
     pub fn failed(&self, failure: &Failure) {
         tracing::error!("{failure}");
+    }
+
+    /// A run that came to its end, for machines; people read it on stdout.
+    pub fn run_ended(&self, done: &Done, duration_s: f64) {
+        if self.log == Log::Json {
+            let (counts, pending) = (done.summary.counts, done.summary.pending());
+            let (points, solved, failed) = (counts.points, counts.solved, counts.failed);
+            let refused = done.summary.refused.len();
+            tracing::info!(run_id = done.run_id, points, solved, failed, pending, refused, duration_s, "run ended");
+        }
     }
 
     fn with_bar(&self, work: impl FnOnce(&mut ProgressBar)) {
@@ -102,6 +113,17 @@ impl Progress for Console {
 
     fn info(&self, message: &str) {
         tracing::info!("{message}");
+    }
+
+    fn stage_ended(&self, end: &StageEnd) {
+        let Work { computed, withdrawn, total, message } = &end.work;
+        match self.log {
+            Log::Text => tracing::info!("{message}"),
+            Log::Json => {
+                let (run_id, stage, duration_s) = (end.run_id, end.stage.name(), end.duration_s);
+                tracing::info!(run_id, stage, computed, withdrawn, total, duration_s, "{message}");
+            }
+        }
     }
 
     fn warn(&self, message: &str) {

@@ -9,8 +9,10 @@ use study::StudyFileError;
 pub enum Ending {
     /// Exit status 0.
     Done,
-    /// Points stayed unsolved, missions were not simulated or inputs were refused: exit status 1.
+    /// Points stayed unsolved, missions were not simulated, inputs were refused or expected ones are missing: exit status 1.
     Losses,
+    /// What the database holds is not complete: exit status 6.
+    Pending,
 }
 
 /// It did not.
@@ -51,6 +53,7 @@ impl Ending {
         match self {
             Self::Done => ExitCode::SUCCESS,
             Self::Losses => ExitCode::from(1),
+            Self::Pending => ExitCode::from(6),
         }
     }
 }

@@ -51,7 +51,8 @@ fn dispatch(args: &Args, console: &Console) -> Result<Ending, Failure> {
     if args.command.can_stop() {
         console::stop_on_signal()?;
     }
-    let options = Options { rehash: args.rehash, wait: Duration::from_secs(args.wait) };
+    let wait = Duration::from_secs(args.wait);
+    let options = &Options { rehash: args.rehash, wait, metrics: args.metrics.clone() };
     match &args.command {
         Command::Demo(demo) => {
             prepare::demo(demo, console)?;
@@ -79,7 +80,8 @@ fn dispatch(args: &Args, console: &Console) -> Result<Ending, Failure> {
         Command::Simulate(study) => run(&open(study)?, &[Stage::Simulate], options, console),
         Command::Report(study) => run(&open(study)?, &[Stage::Report], options, console),
         Command::Run(typed) => {
-            let study = if typed.study.study.is_none() && !Path::new(STUDY_FILE).exists() {
+            let no_study = typed.study.study.is_none() && !Path::new(STUDY_FILE).exists();
+            let study = if no_study {
                 if args.quiet || args.log == Log::Json {
                     // Nobody is there to be shown a demo: a job in the wrong folder must not end well.
                     return Err(Failure::Usage(anyhow!("there is no {STUDY_FILE} here; name a study file")));
@@ -88,13 +90,17 @@ fn dispatch(args: &Args, console: &Console) -> Result<Ending, Failure> {
             } else {
                 typed.study.clone()
             };
-            run(&open(&study)?.solved_by(typed.method.into()), &Stage::ALL, options, console)
+            let ending = run(&open(&study)?.solved_by(typed.method.into()), &Stage::ALL, options, console)?;
+            if no_study {
+                say(format_args!("there is no {STUDY_FILE} here: these are made-up data of a demo"))?;
+            }
+            Ok(ending)
         }
         Command::Verify { study, part } => {
             let study = open(study)?;
             let name = study.name.clone();
             let part = Part { fraction: part.fraction, seed: part.seed };
-            print::verification(&name, &pipeline::verify(study, part, options.wait, console)?)
+            print::verification(&name, &pipeline::verify(study, part, wait, console)?)
         }
         Command::Backup { study, file, db } => {
             let study = StudyArgs { study: Some(study.clone()), db: db.clone() };
@@ -111,9 +117,10 @@ fn dispatch(args: &Args, console: &Console) -> Result<Ending, Failure> {
 }
 
 /// Runs stages and says what came of it.
-fn run(study: &Study, stages: &[Stage], options: Options, console: &Console) -> Result<Ending, Failure> {
+fn run(study: &Study, stages: &[Stage], options: &Options, console: &Console) -> Result<Ending, Failure> {
     let begin = Instant::now();
     let done = pipeline::run(study, stages, options, console)?;
+    console.run_ended(&done, begin.elapsed().as_secs_f64());
     print::run(study, stages, &done, begin.elapsed())
 }
 

@@ -13,8 +13,12 @@ use crate::failure::{Ending, Failure};
 
 pub fn run(study: &Study, stages: &[Stage], done: &Done, elapsed: Duration) -> Result<Ending, Failure> {
     let summary = &done.summary;
+    let pending = match summary.pending() {
+        0 => String::new(),
+        points => format!(", {points} pending: the averages are those of the last time that none was"),
+    };
     say(format_args!(
-        "{}: {} points, {} solved, {} without an optimum; {} files refused; {:.1} s",
+        "{}: {} points, {} solved, {} without an optimum{pending}; {} files refused; {:.1} s",
         study.name,
         summary.counts.points,
         summary.counts.solved,
@@ -28,7 +32,10 @@ pub fn run(study: &Study, stages: &[Stage], done: &Done, elapsed: Duration) -> R
     if stages.contains(&Stage::Report) {
         say(format_args!("report: {}", study.report_dir.join("report.md").display()))?;
     }
-    Ok(Ending::of(summary.is_complete()))
+    match (stages, summary.pending()) {
+        ([Stage::Report], 1..) => Ok(Ending::Pending),
+        _ => Ok(Ending::of(summary.is_complete() && done.news.is_empty())),
+    }
 }
 
 pub fn check(study: &Study, check: &Check) -> Result<Ending, Failure> {
@@ -63,10 +70,11 @@ pub fn check(study: &Study, check: &Check) -> Result<Ending, Failure> {
 }
 
 pub fn status(status: &Status, json: bool) -> Result<Ending, Failure> {
+    let ending = if status.is_settled() { Ending::Done } else { Ending::Pending };
     if json {
         let text = serde_json::to_string(status).map_err(|e| Failure::Inputs(e.into()))?;
         say(format_args!("{text}"))?;
-        return Ok(Ending::Done);
+        return Ok(ending);
     }
     say(format_args!("{} in {}", status.study, status.database))?;
     say(format_args!("{} samples, {} segments excluded", status.samples, status.excluded_segments))?;
@@ -86,13 +94,23 @@ pub fn status(status: &Status, json: bool) -> Result<Ending, Failure> {
         say(format_args!("refused: {refused}"))?;
     }
     match &status.last_run {
-        Some(run) => say(format_args!(
-            "last run {}: {}, started {}, busclimate {}",
-            run.run_id, run.status, run.started_utc, run.program_version
-        ))?,
+        Some(run) => {
+            let reason = run.reason.as_ref().map(|reason| format!(": {reason}")).unwrap_or_default();
+            say(format_args!(
+                "last run {}: {}{reason}; started {}, busclimate {}",
+                run.run_id, run.status, run.started_utc, run.program_version
+            ))?;
+        }
         None => say(format_args!("no run yet"))?,
     }
-    Ok(Ending::Done)
+    let or_none = |time: &Option<String>| time.clone().unwrap_or_else(|| "–".to_owned());
+    say(format_args!(
+        "last success {}; newest mission ends {}, weather {}",
+        or_none(&status.last_success_utc),
+        or_none(&status.newest_mission_utc),
+        or_none(&status.newest_weather_utc)
+    ))?;
+    Ok(ending)
 }
 
 pub fn verification(study: &str, verification: &Verification) -> Result<Ending, Failure> {

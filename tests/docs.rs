@@ -27,6 +27,26 @@ fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
 }
 
 #[test]
+fn cli_the_units_for_systemd_are_valid() {
+    let text = std::fs::read_to_string(root().join("docs/nightly.md")).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let mut units = Vec::new();
+    for block in text.split("```ini\n# /etc/systemd/system/").skip(1) {
+        let (name, unit) = block.split_once('\n').unwrap();
+        let unit = unit.split("```").next().unwrap();
+        let unit = unit.replace("/usr/local/bin/busclimate", env!("CARGO_BIN_EXE_busclimate"));
+        units.push(folder.path().join(name));
+        std::fs::write(folder.path().join(name), unit).unwrap();
+    }
+    assert_eq!(units.len(), 4, "the document has other units");
+    let Ok(output) = std::process::Command::new("systemd-analyze").arg("verify").args(&units).output() else {
+        eprintln!("systemd-analyze is not there: the units are not verified");
+        return;
+    };
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+#[test]
 fn prop_prose_is_at_most_120_columns_wide() {
     let mut wide = Vec::new();
     for path in files(root(), "md") {

@@ -8,7 +8,7 @@ use study::{Study, keys};
 
 use crate::in_order::in_order;
 use crate::inputs::{Inputs, refusal_key};
-use crate::{PipelineError, Progress, freshness};
+use crate::{PipelineError, Progress, Work, freshness};
 
 /// Missions that are read at a time, per thread: while one is hashed and taken in, polars parses another.
 const READERS_A_THREAD: usize = 2;
@@ -34,7 +34,7 @@ pub(crate) fn ingest(
     inputs: &Inputs,
     store: &mut Store,
     progress: &dyn Progress,
-) -> Result<(), PipelineError> {
+) -> Result<Work, PipelineError> {
     let found = mission::discover(&study.base, &study.missions_path, &study.buses)?;
     let overlapping: BTreeMap<usize, FileRecord> = mission::overlaps(&found.missions).into_iter().collect();
     let known = store.known_files(FileKind::Mission)?;
@@ -119,9 +119,12 @@ pub(crate) fn ingest(
         paths.push(record.path.clone());
         store.put_file(&record, &refusal_key(&record))?;
     }
+    if let Some(first) = store.known_files(FileKind::Mission)?.keys().find(|path| !paths.contains(path)) {
+        progress.warn(&format!("missions are no longer there, and what came from them goes; the first: {first}"));
+    }
     let forgotten = store.keep_files(FileKind::Mission, &paths)?;
-    progress.info(&format!("{} missions: {read_now} read now, {forgotten} no longer there", paths.len()));
-    Ok(())
+    let message = format!("{} missions: {read_now} read now, {forgotten} no longer there", paths.len());
+    Ok(Work { computed: read_now, withdrawn: forgotten, total: paths.len() as u64, message })
 }
 
 /// Where each mission was found before. A mission is known by its name and content: it may lie in another folder now, or in an

@@ -16,7 +16,9 @@ mod in_order;
 mod ingest;
 mod inputs;
 mod lock;
+mod metrics;
 mod missions;
+mod news;
 mod open;
 mod optima;
 mod progress;
@@ -38,10 +40,10 @@ pub use files::write_whole;
 pub use freshness::Stale;
 pub use in_order::in_order;
 pub use inputs::Inputs;
-pub use progress::{Progress, Quiet};
+pub use progress::{Progress, Quiet, StageEnd, Work};
 pub use run::{Done, Options, Stage, run};
 pub use show::{Point, Shown, show};
-pub use status::{LastRun, Status, Summary, status};
+pub use status::{LastRun, LastStage, Status, Summary, status};
 pub use verify::{Approximation, Part, Verification, verify};
 
 /// Version of the program, as runs and reports state it.

@@ -14,6 +14,11 @@ const LEAST_WAIT: Duration = Duration::from_secs(1);
 /// How often a waiting run looks again.
 const LOOK: Duration = Duration::from_millis(50);
 
+/// Whether a run holds the lock of a database.
+pub(crate) fn is_held(database: &Path) -> bool {
+    File::open(lock_path(database)).is_ok_and(|file| matches!(file.try_lock_shared(), Err(TryLockError::WouldBlock)))
+}
+
 /// The right to write a database; gives it back when it goes.
 #[derive(Debug)]
 pub(crate) struct RunLock {

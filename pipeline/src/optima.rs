@@ -9,14 +9,14 @@ use store::{MissingOptima, NewOptimum, RecordedStage, StageRecord, Store, Stored
 use study::Study;
 
 use crate::freshness;
-use crate::{PipelineError, Progress};
+use crate::status::status_counts;
+use crate::{PipelineError, Progress, Work};
 
-pub(crate) fn solve(study: &Study, store: &mut Store, progress: &dyn Progress) -> Result<(), PipelineError> {
+pub(crate) fn solve(study: &Study, store: &mut Store, progress: &dyn Progress) -> Result<Work, PipelineError> {
     let key = freshness::solve_key(study, store)?;
     let points = study.grid.points();
     if store.stage(RecordedStage::Solve)?.is_some_and(|record| record.key == key) {
-        progress.info(&format!("0 points computed now (0 samples × {points})"));
-        return Ok(());
+        return work(0, 0, &points.to_string(), store);
     }
     store.reopen_stage(RecordedStage::Solve)?;
     let grid = store.put_grid(&study.design_rows, study.grid.windows())?.grid;
@@ -46,7 +46,6 @@ pub(crate) fn solve(study: &Study, store: &mut Store, progress: &dyn Progress) -
     let counts = store.status_counts()?;
     let result = serde_json::json!([counts.solved, counts.infeasible, counts.not_converged]).to_string();
     store.complete_optima(&StageRecord { key, result })?;
-    progress.info(&format!("{} points computed now ({samples} samples × {})", total.points, per_sample(&gaps, points)));
     if total.programs > 0 {
         progress.info(&format!(
             "{} nonlinear programs, {:.2} quadratic subproblems each, largest KKT residual {:.1e}",
@@ -55,7 +54,14 @@ pub(crate) fn solve(study: &Study, store: &mut Store, progress: &dyn Progress) -
             total.kkt_residual
         ));
     }
-    Ok(())
+    work(total.points, samples, &per_sample(&gaps, points), store)
+}
+
+fn work(points: usize, samples: usize, per_sample: &str, store: &mut Store) -> Result<Work, PipelineError> {
+    let counts = status_counts(store)?;
+    let total = counts.solved + counts.infeasible + counts.not_converged;
+    let message = format!("{points} points computed now ({samples} samples × {per_sample})");
+    Ok(Work { computed: points as u64, withdrawn: 0, total, message })
 }
 
 /// The vote inside the nonlinear programs of the study's method; none of the fast one.

@@ -9,7 +9,7 @@ use study::assumptions::assumptions;
 
 use crate::lock::RunLock;
 use crate::record::input_hash;
-use crate::{Inputs, PROGRAM_VERSION, PipelineError, Progress, folder, freshness};
+use crate::{Inputs, PROGRAM_VERSION, PipelineError, Progress, Work, folder, freshness};
 
 /// How long another report may take that is being written to the same folder.
 const LONGEST_REPORT: Duration = Duration::from_secs(60);
@@ -21,24 +21,40 @@ struct Written {
     headline: Vec<String>,
 }
 
-/// Writes the report, unless the one that is there is of the same rows, and returns what the study found, in a few lines.
+/// The study's findings in a few lines, and what was done for them.
+pub(crate) struct Reported {
+    pub headline: Vec<String>,
+    pub work: Work,
+}
+
+impl Reported {
+    fn of(written: Written, files_now: usize) -> Self {
+        let total = written.files.len();
+        let message = format!("{total} files of the report: {files_now} written now");
+        let work = Work { computed: files_now as u64, withdrawn: 0, total: total as u64, message };
+        Self { headline: written.headline, work }
+    }
+}
+
+/// Writes the report, unless the one that is there is of the same rows.
 pub(crate) fn renew(
     study: &Study,
     inputs: &Inputs,
     store: &mut Store,
     progress: &dyn Progress,
-) -> Result<Vec<String>, PipelineError> {
+) -> Result<Reported, PipelineError> {
     let key = freshness::report_key(study, inputs, store)?;
     if let Some(record) = store.stage(RecordedStage::Report)?.filter(|record| record.key == key)
         && let Ok(written) = serde_json::from_str::<Written>(&record.result)
         && report::FILES.iter().all(|name| is_as_written(study, &written, name))
     {
-        return Ok(written.headline);
+        return Ok(Reported::of(written, 0));
     }
     let written = write(study, store, progress)?;
     let result = serde_json::to_string(&written).expect("names, hashes and lines become JSON");
     store.complete_stage(RecordedStage::Report, &StageRecord { key, result })?;
-    Ok(written.headline)
+    let files = written.files.len();
+    Ok(Reported::of(written, files))
 }
 
 /// Whether a file that a report can have is there as it was written, or not there as it was not.
@@ -50,9 +66,11 @@ fn is_as_written(study: &Study, written: &Written, name: &str) -> bool {
     }
 }
 
-/// Writes the report and returns what the study found, in a few lines.
-pub(crate) fn report(study: &Study, store: &mut Store, progress: &dyn Progress) -> Result<Vec<String>, PipelineError> {
-    Ok(write(study, store, progress)?.headline)
+/// Writes the report.
+pub(crate) fn report(study: &Study, store: &mut Store, progress: &dyn Progress) -> Result<Reported, PipelineError> {
+    let written = write(study, store, progress)?;
+    let files = written.files.len();
+    Ok(Reported::of(written, files))
 }
 
 fn write(study: &Study, store: &mut Store, progress: &dyn Progress) -> Result<Written, PipelineError> {

@@ -1,14 +1,15 @@
 //! A run: stages in their order over one database, and its record.
 
-use std::time::Duration;
-use store::{RunEnd, Store};
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+use store::{RunEnd, RunStage, Store};
 use study::Study;
 
 use crate::lock::RunLock;
 use crate::record::{input_hash, now};
 use crate::{
-    Inputs, PROGRAM_VERSION, PipelineError, Progress, Summary, freshness, ingest, open, optima, report, samples,
-    simulations,
+    Inputs, PROGRAM_VERSION, PipelineError, Progress, StageEnd, Summary, Work, freshness, ingest, metrics, news, open,
+    optima, report, samples, simulations,
 };
 
 /// One step of a run; each one builds on what the steps before it have stored.
@@ -29,24 +30,42 @@ pub enum Stage {
 impl Stage {
     /// All of them in their order.
     pub const ALL: [Self; 5] = [Self::Ingest, Self::Shade, Self::Solve, Self::Simulate, Self::Report];
+
+    /// The name of its command.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Ingest => "ingest",
+            Self::Shade => "shade",
+            Self::Solve => "solve",
+            Self::Simulate => "simulate",
+            Self::Report => "report",
+        }
+    }
 }
 
 /// How a run goes about its work.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Options {
     /// Read every input again, also those that look as they did.
     pub rehash: bool,
     /// How long to wait for another run on the same database.
     pub wait: Duration,
+    /// A file for what the run came to as metrics, in the text format of OpenMetrics.
+    pub metrics: Option<PathBuf>,
 }
 
 /// What a run has done.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Done {
+    /// The run; `None` where it only read.
+    pub run_id: Option<i64>,
     /// What the database holds now.
     pub summary: Summary,
     /// What the study found, in a few lines; nothing where no report was made.
     pub headline: Vec<String>,
+    /// What is not as the study file expects it of the data.
+    pub news: Vec<String>,
 }
 
 /// Runs stages on a study's database, and records the run in it. One run at a time writes a database. What is said of
@@ -54,7 +73,7 @@ pub struct Done {
 ///
 /// # Errors
 /// [`PipelineError`]; what is stored by then stays, and the next run goes on from there.
-pub fn run(study: &Study, stages: &[Stage], options: Options, progress: &dyn Progress) -> Result<Done, PipelineError> {
+pub fn run(study: &Study, stages: &[Stage], options: &Options, progress: &dyn Progress) -> Result<Done, PipelineError> {
     let only_report = stages == [Stage::Report];
     // Declared before the database, so that it outlives it.
     let _lock = if only_report {
@@ -67,31 +86,10 @@ pub fn run(study: &Study, stages: &[Stage], options: Options, progress: &dyn Pro
     let study = &as_solved(study, stages, &mut store)?;
     let inputs = Inputs::new(study, options.rehash);
     let run_id = if only_report { None } else { Some(store.start_run(now(), PROGRAM_VERSION, &study.hash)?) };
-    let mut headline = Vec::new();
-    let outcome = stages.iter().try_for_each(|stage| match stage {
-        Stage::Ingest => {
-            ingest::ingest(study, &inputs, &mut store, progress)?;
-            // Weather that cannot be used is said before anything is computed.
-            inputs.keys(&mut store)?;
-            if stages.contains(&Stage::Shade) { Ok(()) } else { ingest::say_stale(&inputs, &mut store, progress) }
-        }
-        Stage::Shade => samples::join(study, &inputs, &mut store, progress),
-        Stage::Solve => match freshness::samples(&inputs, &mut store)? {
-            Some(stale) => Err(stale.into()),
-            None => optima::solve(study, &mut store, progress),
-        },
-        Stage::Simulate => simulations::simulate(study, &inputs, &mut store, progress),
-        Stage::Report => {
-            let lines = if only_report {
-                report::say_stale(study, &inputs, &mut store, progress)?;
-                report::report(study, &mut store, progress)
-            } else {
-                report::renew(study, &inputs, &mut store, progress)
-            };
-            lines.map(|lines| headline = lines)
-        }
-    });
+    let mut running = Running { study, stages, inputs, run_id, headline: Vec::new() };
+    let outcome = stages.iter().try_for_each(|stage| running.stage(*stage, &mut store, progress));
     let summary = Summary::of(study, &mut store)?;
+    let news = if outcome.is_ok() { news::news(study, &mut store, now())? } else { Vec::new() };
     if let Some(id) = run_id {
         let end = match &outcome {
             Ok(()) if summary.is_complete() => RunEnd::Done,
@@ -100,15 +98,77 @@ pub fn run(study: &Study, stages: &[Stage], options: Options, progress: &dyn Pro
             Err(_) => RunEnd::Failed,
         };
         let input_hash = input_hash(&mut store)?;
-        store.end_run(id, now(), end, Some(&input_hash), summary.counts)?;
+        let reason = outcome.as_ref().err().map(ToString::to_string);
+        store.end_run(id, now(), end, Some(&input_hash), summary.counts, reason.as_deref())?;
+    }
+    if let Some(file) = &options.metrics {
+        metrics::write(file, study, &mut store)?;
     }
     store.close()?;
     summary.refused.iter().for_each(|file| progress.warn(&format!("refused: {file}")));
     if let Some(failed) = &summary.first_unsimulated {
         progress.warn(&format!("{} missions are not simulated, the first: {failed}", summary.unsimulated));
     }
+    news.iter().for_each(|line| progress.warn(line));
     outcome?;
-    Ok(Done { summary, headline })
+    Ok(Done { run_id, summary, headline: running.headline, news })
+}
+
+/// A run that is at work.
+struct Running<'s> {
+    study: &'s Study,
+    stages: &'s [Stage],
+    inputs: Inputs<'s>,
+    run_id: Option<i64>,
+    headline: Vec<String>,
+}
+
+impl Running<'_> {
+    /// Does a stage, and records what it did.
+    fn stage(&mut self, stage: Stage, store: &mut Store, progress: &dyn Progress) -> Result<(), PipelineError> {
+        let begin = Instant::now();
+        let work = self.work(stage, store, progress)?;
+        let end = StageEnd { run_id: self.run_id, stage, work, duration_s: begin.elapsed().as_secs_f64() };
+        if let Some(id) = self.run_id {
+            let Work { computed, withdrawn, total, .. } = end.work;
+            let row =
+                RunStage { stage: stage.name().to_owned(), computed, withdrawn, total, duration_s: end.duration_s };
+            store.put_run_stage(id, &row)?;
+        }
+        progress.stage_ended(&end);
+        Ok(())
+    }
+
+    fn work(&mut self, stage: Stage, store: &mut Store, progress: &dyn Progress) -> Result<Work, PipelineError> {
+        let (study, inputs) = (self.study, &self.inputs);
+        match stage {
+            Stage::Ingest => {
+                let work = ingest::ingest(study, inputs, store, progress)?;
+                // Weather that cannot be used is said before anything is computed.
+                inputs.keys(store)?;
+                if !self.stages.contains(&Stage::Shade) {
+                    ingest::say_stale(inputs, store, progress)?;
+                }
+                Ok(work)
+            }
+            Stage::Shade => samples::join(study, inputs, store),
+            Stage::Solve => match freshness::samples(inputs, store)? {
+                Some(stale) => Err(stale.into()),
+                None => optima::solve(study, store, progress),
+            },
+            Stage::Simulate => simulations::simulate(study, inputs, store, progress),
+            Stage::Report => {
+                let reported = if self.run_id.is_none() {
+                    report::say_stale(study, inputs, store, progress)?;
+                    report::report(study, store, progress)?
+                } else {
+                    report::renew(study, inputs, store, progress)?
+                };
+                self.headline = reported.headline;
+                Ok(reported.work)
+            }
+        }
+    }
 }
 
 /// The study by the method of the stored optima, where a run finds none anew.

@@ -4,20 +4,14 @@ use ingest::sample::Surroundings;
 use store::Store;
 use study::Study;
 
-use crate::{Inputs, PipelineError, Progress, freshness};
+use crate::{Inputs, PipelineError, Work, freshness};
 
-pub(crate) fn join(
-    study: &Study,
-    inputs: &Inputs,
-    store: &mut Store,
-    progress: &dyn Progress,
-) -> Result<(), PipelineError> {
+pub(crate) fn join(study: &Study, inputs: &Inputs, store: &mut Store) -> Result<Work, PipelineError> {
     if !inputs.rehash() && freshness::samples(inputs, store)?.is_none() {
         inputs.restamp(store)?;
         let samples: u64 = store.months()?.iter().map(|m| m.sample_count).sum();
-        let excluded: u64 = store.exclusion_counts()?.iter().map(|e| e.count).sum();
-        progress.info(&format!("{samples} samples: 0 new or changed, 0 withdrawn; {excluded} segments excluded"));
-        return Ok(());
+        let excluded = store.exclusion_counts()?.iter().map(|e| e.count).sum();
+        return Ok(work(samples, 0, 0, excluded));
     }
     let (weather, _) = inputs.weather()?;
     let (shadow, _) = inputs.shadow()?;
@@ -35,10 +29,11 @@ pub(crate) fn join(
         return Err(PipelineError::NoSamples { excluded: excluded.len(), reason });
     }
     let (changed, withdrawn) = store.put_samples(&samples, &excluded, &inputs.records()?)?;
-    progress.info(&format!(
-        "{} samples: {changed} new or changed, {withdrawn} withdrawn; {} segments excluded",
-        samples.len(),
-        excluded.len()
-    ));
-    Ok(())
+    Ok(work(samples.len() as u64, changed, withdrawn, excluded.len() as u64))
+}
+
+fn work(total: u64, computed: u64, withdrawn: u64, excluded: u64) -> Work {
+    let message =
+        format!("{total} samples: {computed} new or changed, {withdrawn} withdrawn; {excluded} segments excluded");
+    Work { computed, withdrawn, total, message }
 }

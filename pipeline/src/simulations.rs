@@ -12,7 +12,7 @@ use crate::basis::{SimulationBasis, optima};
 use crate::freshness;
 use crate::missions::{MissionInTime, WeatherAndShade, missions};
 use crate::record::input_hash;
-use crate::{Inputs, PipelineError, Progress, traces};
+use crate::{Inputs, PipelineError, Progress, Work, traces};
 
 /// Missions between two transactions, per thread.
 const MISSIONS_A_THREAD: usize = 4;
@@ -36,7 +36,7 @@ pub(crate) fn simulate(
     inputs: &Inputs,
     store: &mut Store,
     progress: &dyn Progress,
-) -> Result<(), PipelineError> {
+) -> Result<Work, PipelineError> {
     if let Some(stale) = freshness::samples(inputs, store)? {
         return Err(stale.into());
     }
@@ -45,8 +45,7 @@ pub(crate) fn simulate(
     }
     let key = freshness::simulate_key(study, inputs, store)?;
     if let Some(record) = store.stage(RecordedStage::Simulate)?.filter(|record| record.key == key) {
-        progress.info(&told(study, 0, record.result.parse().unwrap_or(0), 0));
-        return Ok(());
+        return Ok(work(study, 0, record.result.parse().unwrap_or(0), 0));
     }
     store.reopen_stage(RecordedStage::Simulate)?;
     let basis = SimulationBasis {
@@ -89,19 +88,20 @@ pub(crate) fn simulate(
         return Err(PipelineError::Interrupted);
     }
     traces::trace(&basis, store, &wanted)?;
-    progress.info(&told(study, simulated, basis.missions.len(), stale.len()));
     store.complete_simulations(&StageRecord { key, result: basis.missions.len().to_string() })?;
-    Ok(())
+    Ok(work(study, simulated, basis.missions.len(), stale.len()))
 }
 
-fn told(study: &Study, simulated: usize, missions: usize, stale: usize) -> String {
-    format!(
+fn work(study: &Study, simulated: usize, missions: usize, stale: usize) -> Work {
+    let per_mission = study.grid.designs().len() * study.simulated_windows.len() * Replay::ALL.len();
+    let message = format!(
         "{simulated} missions simulated now ({missions} missions × {} designs × {} windows × {} ways to run the bus); {stale} no \
          longer valid",
         study.grid.designs().len(),
         study.simulated_windows.len(),
         Replay::ALL.len(),
-    )
+    );
+    Work { computed: simulated as u64, withdrawn: stale as u64, total: (missions * per_mission) as u64, message }
 }
 
 impl SimulationBasis<'_> {

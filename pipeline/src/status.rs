@@ -1,12 +1,12 @@
 //! What the database holds of a study.
 
 use chrono::{DateTime, SecondsFormat, Utc};
-use ingest::FileRecord;
+use ingest::{FileKind, FileRecord};
 use serde::Serialize;
-use store::{Counts, RecordedStage, RunRow, StatusCounts, Store};
+use store::{Counts, RecordedStage, RunRow, RunStage, StatusCounts, Store};
 use study::Study;
 
-use crate::{PipelineError, open};
+use crate::{PipelineError, lock, open};
 
 /// What the database holds of a study, in short.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -39,6 +39,12 @@ impl Summary {
         Ok(Self { counts, refused, unsimulated: failures.len(), first_unsimulated: failures.first().map(line) })
     }
 
+    /// Points of the study that are not computed.
+    #[must_use]
+    pub fn pending(&self) -> u64 {
+        self.counts.points.saturating_sub(self.counts.solved + self.counts.failed)
+    }
+
     /// Whether every point has an optimum, every input is used and every mission simulated.
     #[must_use]
     pub fn is_complete(&self) -> bool {
@@ -47,7 +53,7 @@ impl Summary {
 }
 
 /// The points by status, as `solve` counted them when it was last complete, or counted now.
-fn status_counts(store: &mut Store) -> Result<StatusCounts, PipelineError> {
+pub(crate) fn status_counts(store: &mut Store) -> Result<StatusCounts, PipelineError> {
     let record = store.stage(RecordedStage::Solve)?;
     let counted: Option<[u64; 3]> = record.and_then(|r| serde_json::from_str(&r.result).ok());
     if let Some([solved, infeasible, not_converged]) = counted {
@@ -95,6 +101,50 @@ pub struct Status {
     pub refused_files: Vec<String>,
     /// The latest run.
     pub last_run: Option<LastRun>,
+    /// What its stages did.
+    pub last_stages: Vec<LastStage>,
+    /// End of the last run that finished its work, RFC 3339.
+    pub last_success_utc: Option<String>,
+    /// Last second of the newest mission.
+    pub newest_mission_utc: Option<String>,
+    /// End of the weather.
+    pub newest_weather_utc: Option<String>,
+    /// Size of the database in bytes.
+    pub database_bytes: u64,
+}
+
+impl Status {
+    /// Whether every point is computed and the last run ended well.
+    #[must_use]
+    pub fn is_settled(&self) -> bool {
+        let ended_well = |run: &LastRun| !matches!(run.status.as_str(), INTERRUPTED | "failed");
+        self.pending == 0 && self.last_run.as_ref().is_none_or(ended_well)
+    }
+}
+
+/// How a run ended that did not come to its end.
+const INTERRUPTED: &str = "interrupted";
+
+/// A stage of a run.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LastStage {
+    /// Its name.
+    pub stage: String,
+    /// What it did: missions read, samples new or changed, points, simulations, files.
+    pub computed: u64,
+    /// What is no longer valid since.
+    pub withdrawn: u64,
+    /// All that it keeps.
+    pub total: u64,
+    /// How long it took in s.
+    pub duration_s: f64,
+}
+
+impl From<RunStage> for LastStage {
+    fn from(row: RunStage) -> Self {
+        let RunStage { stage, computed, withdrawn, total, duration_s } = row;
+        Self { stage, computed, withdrawn, total, duration_s }
+    }
 }
 
 /// A run.
@@ -110,19 +160,25 @@ pub struct LastRun {
     pub status: String,
     /// Version of the program.
     pub program_version: String,
+    /// Why it failed.
+    pub reason: Option<String>,
 }
 
 impl From<RunRow> for LastRun {
     fn from(row: RunRow) -> Self {
-        let text = |time: DateTime<Utc>| time.to_rfc3339_opts(SecondsFormat::Secs, true);
         Self {
             run_id: row.run_id,
-            started_utc: text(row.started),
-            finished_utc: row.finished.map(text),
+            started_utc: time_text(row.started),
+            finished_utc: row.finished.map(time_text),
             status: row.status,
             program_version: row.program_version,
+            reason: row.reason,
         }
     }
+}
+
+fn time_text(time: DateTime<Utc>) -> String {
+    time.to_rfc3339_opts(SecondsFormat::Secs, true)
 }
 
 /// What the database of a study holds.
@@ -131,11 +187,25 @@ impl From<RunRow> for LastRun {
 /// [`PipelineError::Store`] where there is none or it cannot be read.
 pub fn status(study: &Study) -> Result<Status, PipelineError> {
     let mut store = open::for_reading(study)?;
-    let summary = Summary::of(study, &mut store)?;
-    let counts = status_counts(&mut store)?;
+    let mut status = status_of(study, &mut store)?;
+    if let Some(run) = &mut status.last_run
+        && run.status == "running"
+        && !lock::is_held(&study.database)
+    {
+        INTERRUPTED.clone_into(&mut run.status);
+    }
+    store.close()?;
+    Ok(status)
+}
+
+/// The same from an open database.
+pub(crate) fn status_of(study: &Study, store: &mut Store) -> Result<Status, PipelineError> {
+    let summary = Summary::of(study, store)?;
+    let counts = status_counts(store)?;
     let months = store.months()?;
     let grid = store.grid()?;
-    let status = Status {
+    let newest = |file: Option<(DateTime<Utc>, String)>| file.map(|(last, _)| time_text(last));
+    Ok(Status {
         study: study.name.clone(),
         database: study.database.display().to_string(),
         samples: months.iter().map(|m| m.sample_count).sum(),
@@ -150,7 +220,10 @@ pub fn status(study: &Study) -> Result<Status, PipelineError> {
         missing_months: (1..=12).filter(|m| !months.iter().any(|row| row.month == *m)).collect(),
         refused_files: summary.refused,
         last_run: store.last_run()?.map(LastRun::from),
-    };
-    store.close()?;
-    Ok(status)
+        last_stages: store.last_run_stages()?.into_iter().map(LastStage::from).collect(),
+        last_success_utc: store.last_success()?.map(time_text),
+        newest_mission_utc: newest(store.newest_file(FileKind::Mission)?),
+        newest_weather_utc: newest(store.newest_file(FileKind::Weather)?),
+        database_bytes: std::fs::metadata(&study.database).map_or(0, |m| m.len()),
+    })
 }

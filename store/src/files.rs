@@ -1,11 +1,12 @@
 //! Input files, and what was noticed in them.
 
+use chrono::{DateTime, Utc};
 use ingest::{FileKind, FileRecord, FileStamp, Finding, FindingKind};
 use sqlx::Row;
 use sqlx::sqlite::{SqliteConnection, SqliteRow};
 use std::collections::BTreeMap;
 
-use crate::row::{Insert, begin, count, optional_time, time_text, word};
+use crate::row::{Insert, begin, count, optional_time, time, time_text, word};
 use crate::{Store, StoreError};
 
 /// A file that the database holds.
@@ -88,6 +89,19 @@ impl Store {
             let forgotten = forget_others(&mut tx, known.keys(), paths).await?;
             tx.commit().await?;
             Ok(forgotten)
+        })
+    }
+
+    /// The last second of an accepted file of a kind, and the file.
+    ///
+    /// # Errors
+    /// [`StoreError::Statement`].
+    pub fn newest_file(&mut self, kind: FileKind) -> Result<Option<(DateTime<Utc>, String)>, StoreError> {
+        self.drive(async |c| {
+            let sql = "SELECT last_utc, path FROM source_file WHERE kind = ? AND outcome = 'accepted' AND last_utc IS NOT NULL
+                ORDER BY last_utc DESC, path LIMIT 1";
+            let Some(r) = sqlx::query(sql).bind(kind.name()).fetch_optional(c).await? else { return Ok(None) };
+            Ok(Some((time(&r, "last_utc")?, r.try_get("path")?)))
         })
     }
 

@@ -24,7 +24,7 @@ pub use files::KnownFile;
 pub use grid::{DesignRow, GridChange, StoredGrid};
 pub use missions::StoredSegment;
 pub use optima::{MissingOptima, NewOptimum, StatusCounts, StoredOptimum};
-pub use runs::{Counts, RunEnd, RunRow};
+pub use runs::{Counts, RunEnd, RunRow, RunStage};
 pub use simulations::{SimulatedClass, SimulatedYear, SimulationFailure, SimulationId, SimulationRow};
 pub use stages::{RecordedStage, StageRecord};
 pub use traces::{MissionTrace, TraceRow, TraceWindow};

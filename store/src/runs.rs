@@ -45,6 +45,23 @@ pub struct RunRow {
     pub program_version: String,
     /// Points.
     pub counts: Option<Counts>,
+    /// Why it failed.
+    pub reason: Option<String>,
+}
+
+/// What a stage of a run did.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RunStage {
+    /// Name of the stage.
+    pub stage: String,
+    /// What was done now: missions read, samples new or changed, points, simulations, files.
+    pub computed: u64,
+    /// What is no longer valid.
+    pub withdrawn: u64,
+    /// All that the stage keeps.
+    pub total: u64,
+    /// How long it took in s.
+    pub duration_s: f64,
 }
 
 impl Store {
@@ -73,6 +90,7 @@ impl Store {
         end: RunEnd,
         input_hash: Option<&str>,
         counts: Counts,
+        reason: Option<&str>,
     ) -> Result<(), StoreError> {
         let status = match end {
             RunEnd::Done => "done",
@@ -82,7 +100,7 @@ impl Store {
         };
         self.drive(async |c| {
             let sql = "UPDATE run SET finished_utc = ?, status = ?, input_hash = ?, point_count = ?, solved_count = ?,
-                failed_count = ? WHERE run_id = ?";
+                failed_count = ?, reason = ? WHERE run_id = ?";
             sqlx::query(sql)
                 .bind(time_text(finished))
                 .bind(status)
@@ -90,6 +108,7 @@ impl Store {
                 .bind(counts.points.cast_signed())
                 .bind(counts.solved.cast_signed())
                 .bind(counts.failed.cast_signed())
+                .bind(reason)
                 .bind(run_id)
                 .execute(c)
                 .await?;
@@ -104,7 +123,7 @@ impl Store {
     pub fn last_run(&mut self) -> Result<Option<RunRow>, StoreError> {
         self.drive(async |c| {
             let sql = "SELECT run_id, started_utc, finished_utc, status, program_version, point_count, solved_count,
-                failed_count FROM run ORDER BY run_id DESC LIMIT 1";
+                failed_count, reason FROM run ORDER BY run_id DESC LIMIT 1";
             let Some(r) = sqlx::query(sql).fetch_optional(c).await? else { return Ok(None) };
             let points: Option<i64> = r.try_get("point_count")?;
             let counts = match points {
@@ -122,7 +141,70 @@ impl Store {
                 status: r.try_get("status")?,
                 program_version: r.try_get("program_version")?,
                 counts,
+                reason: r.try_get("reason")?,
             }))
+        })
+    }
+
+    /// Records what a stage of a run did, after those before it.
+    ///
+    /// # Errors
+    /// [`StoreError::Statement`].
+    pub fn put_run_stage(&mut self, run_id: i64, stage: &RunStage) -> Result<(), StoreError> {
+        self.drive(async |c| {
+            let sql = "INSERT INTO run_stage
+                SELECT ?1, count(*), ?2, ?3, ?4, ?5, ?6 FROM run_stage WHERE run_id = ?1";
+            sqlx::query(sql)
+                .bind(run_id)
+                .bind(&stage.stage)
+                .bind(stage.computed.cast_signed())
+                .bind(stage.withdrawn.cast_signed())
+                .bind(stage.total.cast_signed())
+                .bind(stage.duration_s)
+                .execute(c)
+                .await?;
+            Ok(())
+        })
+    }
+
+    /// The stages of the latest run that had any.
+    ///
+    /// # Errors
+    /// [`StoreError::Statement`].
+    pub fn last_run_stages(&mut self) -> Result<Vec<RunStage>, StoreError> {
+        let sql = "SELECT stage, computed_count, withdrawn_count, total_count, duration_s FROM run_stage
+            WHERE run_id = (SELECT max(run_id) FROM run_stage) ORDER BY position";
+        self.select(sql, |r| {
+            Ok(RunStage {
+                stage: r.try_get("stage")?,
+                computed: count(r, "computed_count")?,
+                withdrawn: count(r, "withdrawn_count")?,
+                total: count(r, "total_count")?,
+                duration_s: r.try_get("duration_s")?,
+            })
+        })
+    }
+
+    /// When a run last finished its work, with losses or without.
+    ///
+    /// # Errors
+    /// [`StoreError::Statement`].
+    pub fn last_success(&mut self) -> Result<Option<DateTime<Utc>>, StoreError> {
+        self.drive(async |c| {
+            let sql = "SELECT max(finished_utc) AS finished_utc FROM run WHERE status IN ('done', 'done with losses')";
+            Ok(optional_time(&sqlx::query(sql).fetch_one(c).await?, "finished_utc")?)
+        })
+    }
+
+    /// Pace of a stage: the seconds of one thing computed, from the latest run that computed any; `None` before.
+    ///
+    /// # Errors
+    /// [`StoreError::Statement`].
+    pub fn pace_s(&mut self, stage: &str) -> Result<Option<f64>, StoreError> {
+        self.drive(async |c| {
+            let sql = "SELECT duration_s / computed_count AS pace_s FROM run_stage
+                WHERE stage = ? AND computed_count > 0 ORDER BY run_id DESC LIMIT 1";
+            Ok(sqlx::query(sql).bind(stage).fetch_optional(c).await?.map(|r| r.try_get("pace_s")).transpose()?)
         })
     }
 }

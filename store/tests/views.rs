@@ -366,7 +366,7 @@ fn prop_runs_are_recorded_and_a_broken_one_is_marked() {
     store.start_run(start(), "0.1.0", "h").unwrap();
     let id = store.start_run(start() + TimeDelta::days(1), "0.1.0", "h").unwrap();
     let counts = Counts { points: 8, solved: 7, failed: 1 };
-    store.end_run(id, start() + TimeDelta::days(2), RunEnd::DoneWithLosses, Some("i"), counts).unwrap();
+    store.end_run(id, start() + TimeDelta::days(2), RunEnd::DoneWithLosses, Some("i"), counts, None).unwrap();
     let last = store.last_run().unwrap().unwrap();
     assert_eq!((last.status.as_str(), last.counts), ("done with losses", Some(counts)));
     assert_eq!((last.started, last.finished), (start() + TimeDelta::days(1), Some(start() + TimeDelta::days(2))));

@@ -64,6 +64,9 @@ pub struct Missions {
     pub door_open_share: f64,
     #[serde(default)]
     pub keep_partial: bool,
+    // What is expected of the data concerns whoever watches over a job, not the results.
+    #[serde(default, skip_serializing)]
+    pub expect_newest_within_hours: Option<f64>,
 }
 
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -84,6 +87,8 @@ pub struct Weather {
     pub ghi_column: Option<String>,
     pub dhi_column: Option<String>,
     pub dni_column: Option<String>,
+    #[serde(default, skip_serializing)]
+    pub expect_newest_within_hours: Option<f64>,
 }
 
 /// Which of the study's windows are simulated.

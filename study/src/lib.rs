@@ -50,6 +50,10 @@ pub struct Study {
     pub weather_path: String,
     /// How it is read.
     pub weather: WeatherOptions,
+    /// How old the end of the newest mission may be in hours before it is news; `None` where nothing is expected.
+    pub expect_missions_within_h: Option<f64>,
+    /// The same of the weather.
+    pub expect_weather_within_h: Option<f64>,
     /// Where the shadow fractions are.
     pub shadow_path: String,
     /// Constants of the bus.
@@ -123,6 +127,8 @@ impl Study {
             missions,
             weather_path: file.weather.path.clone(),
             weather,
+            expect_missions_within_h: ready::expected_h("[missions]", file.missions.expect_newest_within_hours)?,
+            expect_weather_within_h: ready::expected_h("[weather]", file.weather.expect_newest_within_hours)?,
             shadow_path: file.shadow.path.clone(),
             vehicle: file.vehicle.clone(),
             dynamics: file.dynamics,

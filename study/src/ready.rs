@@ -118,6 +118,16 @@ fn cop(
     }
 }
 
+/// How old the newest file of a section may be.
+pub(crate) fn expected_h(section: &str, hours: Option<f64>) -> Result<Option<f64>, String> {
+    match hours {
+        Some(h) if !(h.is_finite() && h > 0.0) => {
+            Err(format!("{section} expect_newest_within_hours = {h} must be a number of hours above 0"))
+        }
+        hours => Ok(hours),
+    }
+}
+
 /// The windows of the study; without any, the paper's seventeen.
 pub(crate) fn windows(comfort: &file::Comfort) -> Result<Vec<ComfortWindow>, String> {
     let default = file::Steps { from: 0.0, to: 2.0, step: 0.125 };
