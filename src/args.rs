@@ -73,7 +73,13 @@ pub enum Command {
     /// Write tables and figures.
     Report(StudyArgs),
     /// All stages, only what is missing; without a study file it makes a demo and runs that.
-    Run(SolveArgs),
+    Run {
+        #[command(flatten)]
+        solve: SolveArgs,
+        /// Only say what would be done, why, and in about what time; nothing is written.
+        #[arg(long)]
+        dry_run: bool,
+    },
     /// Solve a part of the stored points by another method, and check every stored sum.
     Verify {
         #[command(flatten)]
@@ -95,6 +101,9 @@ pub enum Command {
     Status {
         #[command(flatten)]
         study: StudyArgs,
+        /// Also what each stage of a run would do, and what has changed.
+        #[arg(long)]
+        why: bool,
         /// As one JSON object.
         #[arg(long)]
         json: bool,
@@ -118,7 +127,7 @@ impl Command {
                 | Self::Solve(_)
                 | Self::Simulate(_)
                 | Self::Report(_)
-                | Self::Run(_)
+                | Self::Run { .. }
                 | Self::Verify { .. }
         )
     }

@@ -79,7 +79,12 @@ fn dispatch(args: &Args, console: &Console) -> Result<Ending, Failure> {
         }
         Command::Simulate(study) => run(&open(study)?, &[Stage::Simulate], options, console),
         Command::Report(study) => run(&open(study)?, &[Stage::Report], options, console),
-        Command::Run(typed) => {
+        Command::Run { solve: typed, dry_run: true } => {
+            let study = open(&typed.study)?.solved_by(typed.method.into());
+            print::plan(&pipeline::plan(&study, args.rehash)?)?;
+            Ok(Ending::Done)
+        }
+        Command::Run { solve: typed, dry_run: false } => {
             let no_study = typed.study.study.is_none() && !Path::new(STUDY_FILE).exists();
             let study = if no_study {
                 if args.quiet || args.log == Log::Json {
@@ -108,7 +113,12 @@ fn dispatch(args: &Args, console: &Console) -> Result<Ending, Failure> {
             say(format_args!("{} is written", file.display()))?;
             Ok(Ending::Done)
         }
-        Command::Status { study, json } => print::status(&pipeline::status(&open(study)?)?, *json),
+        Command::Status { study, why, json } => {
+            let study = open(study)?;
+            let status = pipeline::status(&study)?;
+            let plan = if *why { Some(pipeline::plan(&study, args.rehash)?) } else { None };
+            print::status(&status, plan.as_deref(), *json)
+        }
         Command::Show { study, point } => {
             let wanted = Point { sample: point.sample, design: point.design.clone(), pmv_limit: point.pmv_limit };
             print::shown(&wanted, &pipeline::show(&open(study)?, &wanted)?, point.figure.as_deref())

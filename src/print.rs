@@ -2,7 +2,8 @@
 
 use anyhow::anyhow;
 use cabin::celsius;
-use pipeline::{Check, Done, Point, Shown, Stage, Status, Verification, write_whole};
+use pipeline::{Check, Done, Point, Shown, Stage, StagePlan, Status, Verification, write_whole};
+use serde::Serialize;
 use solve::Method;
 use std::path::Path;
 use std::time::Duration;
@@ -69,10 +70,52 @@ pub fn check(study: &Study, check: &Check) -> Result<Ending, Failure> {
     Ok(Ending::of(check.refused.is_empty()))
 }
 
-pub fn status(status: &Status, json: bool) -> Result<Ending, Failure> {
+/// What a run would do, stage by stage.
+pub fn plan(plan: &[StagePlan]) -> Result<(), Failure> {
+    for stage in plan {
+        if stage.why.is_empty() {
+            say(format_args!("{:<9} nothing to do", stage.stage))?;
+            continue;
+        }
+        say(format_args!(
+            "{:<9} {} {}, about {:.1} s",
+            stage.stage,
+            stage.to_compute,
+            unit(stage.stage),
+            stage.seconds
+        ))?;
+        for line in &stage.why {
+            say(format_args!("          {line}"))?;
+        }
+    }
+    say(format_args!("about {:.1} s in all", plan.iter().map(|stage| stage.seconds).sum::<f64>()))
+}
+
+/// What a stage counts.
+fn unit(stage: &str) -> &'static str {
+    match stage {
+        "ingest" => "missions to read",
+        "shade" => "segments to join",
+        "solve" => "points to compute",
+        "simulate" => "missions to simulate",
+        _ => "files to write",
+    }
+}
+
+/// Status and plan as one JSON object.
+#[derive(Serialize)]
+struct StatusAndPlan<'a> {
+    #[serde(flatten)]
+    status: &'a Status,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    plan: Option<&'a [StagePlan]>,
+}
+
+pub fn status(status: &Status, stages: Option<&[StagePlan]>, json: bool) -> Result<Ending, Failure> {
     let ending = if status.is_settled() { Ending::Done } else { Ending::Pending };
     if json {
-        let text = serde_json::to_string(status).map_err(|e| Failure::Inputs(e.into()))?;
+        let both = StatusAndPlan { status, plan: stages };
+        let text = serde_json::to_string(&both).map_err(|e| Failure::Inputs(e.into()))?;
         say(format_args!("{text}"))?;
         return Ok(ending);
     }
@@ -110,6 +153,10 @@ pub fn status(status: &Status, json: bool) -> Result<Ending, Failure> {
         or_none(&status.newest_mission_utc),
         or_none(&status.newest_weather_utc)
     ))?;
+    if let Some(stages) = stages {
+        say(format_args!("\na run would do:"))?;
+        plan(stages)?;
+    }
     Ok(ending)
 }
 

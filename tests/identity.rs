@@ -106,3 +106,58 @@ fn prop_a_design_or_window_more_is_computed_alone_and_to_the_same_bit() {
     assert!(before == results());
     assert!(report == scratch.report());
 }
+
+#[test]
+fn cli_a_plan_says_what_a_run_would_do_and_why() {
+    let scratch = small();
+    let nothing = |text: &str| assert_eq!(text.matches("nothing to do").count(), 5, "{text}");
+    std::thread::sleep(std::time::Duration::from_secs(2));
+    // Files that were written a moment ago have no stamp before.
+    scratch.expect(0, &["run"]);
+    nothing(&scratch.expect(0, &["run", "--dry-run"]).stdout);
+    nothing(&scratch.expect(0, &["status", "--why"]).stdout);
+    let samples: usize = scratch.query("SELECT count(*) FROM sample")[0][0].parse().unwrap();
+    let database = std::fs::read(scratch.path("study.db")).unwrap();
+
+    scratch.edit("study.toml", "[designs.\"hp\"]", "[designs.\"hp\"]\nheating_cop = \"vecto-2stage\"");
+    scratch.edit("study.toml", "[0.5, 0.7, 1.0]", "[0.5, 0.8, 1.0]");
+    let plan = scratch.expect(0, &["run", "--dry-run"]).stdout;
+    for line in [
+        "ingest    nothing to do",
+        "shade     nothing to do",
+        &format!("solve     {} points to compute", samples * (4 + 3)),
+        "the design hp has changed",
+        "1 comfort windows are new",
+        "designs.\"hp\".heating_cop was vecto-continuous and is vecto-2stage",
+        "comfort was -0.5 … 0.5, -0.7 … 0.7, -1 … 1 and is -0.5 … 0.5, -0.8 … 0.8, -1 … 1",
+        "simulate  16 missions to simulate",
+    ] {
+        assert!(plan.contains(line), "{line}\n{plan}");
+    }
+    assert!(database == std::fs::read(scratch.path("study.db")).unwrap(), "a plan writes");
+    computes(&scratch.expect(0, &["run"]), samples * (4 + 3), 4 * 4);
+
+    // Missions: one is new, one is gone, one looks different and is not.
+    let names = scratch.missions();
+    let text = scratch.read(&format!("ztbus/{}", names[0]));
+    std::fs::rename(scratch.path("ztbus").join(&names[1]), scratch.path("aside.csv")).unwrap();
+    scratch.write(&format!("ztbus/{}", names[0]), text);
+    scratch.edit("study.toml", "time_zone = \"Europe/Zurich\"", "time_zone = \"Asia/Tokyo\"");
+    let plan = scratch.expect(0, &["status", "--why"]).stdout;
+    for line in [
+        &format!("1 mission is no longer there: ztbus/{}", names[1]),
+        &format!("1 mission is to be hashed, for size, time or inode are not as they were: ztbus/{}", names[0]),
+        "location.time_zone was Europe/Zurich and is Asia/Tokyo",
+    ] {
+        assert!(plan.contains(line), "{line}\n{plan}");
+    }
+    let json = scratch.expect(0, &["status", "--why", "--json"]).stdout;
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(json["plan"][0]["to_compute"], 1);
+
+    // Where there is no database, all is new, and none is made.
+    std::fs::remove_file(scratch.path("study.db")).unwrap();
+    let plan = scratch.expect(0, &["run", "--dry-run"]).stdout;
+    assert!(plan.contains("3 missions are new, the first: "), "{plan}");
+    assert!(!scratch.path("study.db").exists());
+}

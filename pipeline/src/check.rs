@@ -7,9 +7,9 @@ use study::Study;
 use crate::{Inputs, PipelineError};
 
 /// Measured on two cores of a plain machine; good for an order of magnitude.
-const ROWS_A_SECOND: f64 = 2.8e6;
-const POINTS_A_SECOND: f64 = 3.0e5;
-const SIMULATED_A_SECOND: f64 = 9.0e6;
+pub(crate) const ROWS_A_SECOND: f64 = 2.8e6;
+pub(crate) const POINTS_A_SECOND: f64 = 3.0e5;
+pub(crate) const SIMULATED_A_SECOND: f64 = 9.0e6;
 const BYTES_A_POINT: f64 = 125.0;
 
 /// What a run would work on, and about how long.

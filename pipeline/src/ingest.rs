@@ -129,17 +129,17 @@ pub(crate) fn ingest(
 
 /// Where each mission was found before. A mission is known by its name and content: it may lie in another folder now, or in an
 /// archive.
-struct Before<'k> {
+pub(crate) struct Before<'k> {
     path_of_name: BTreeMap<&'k str, &'k String>,
 }
 
 impl<'k> Before<'k> {
-    fn of(known: &'k BTreeMap<String, KnownFile>) -> Self {
+    pub fn of(known: &'k BTreeMap<String, KnownFile>) -> Self {
         let read = known.iter().filter(|(_, file)| !file.blake3.is_empty());
         Self { path_of_name: read.map(|(path, _)| (mission_name(path), path)).collect() }
     }
 
-    fn find(
+    pub fn find(
         &self,
         known: &'k BTreeMap<String, KnownFile>,
         source: &MissionSource,

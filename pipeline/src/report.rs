@@ -44,10 +44,7 @@ pub(crate) fn renew(
     progress: &dyn Progress,
 ) -> Result<Reported, PipelineError> {
     let key = freshness::report_key(study, inputs, store)?;
-    if let Some(record) = store.stage(RecordedStage::Report)?.filter(|record| record.key == key)
-        && let Ok(written) = serde_json::from_str::<Written>(&record.result)
-        && report::FILES.iter().all(|name| is_as_written(study, &written, name))
-    {
+    if let Ok(written) = standing(study, &key, store)? {
         return Ok(Reported::of(written, 0));
     }
     let written = write(study, store, progress)?;
@@ -55,6 +52,27 @@ pub(crate) fn renew(
     store.complete_stage(RecordedStage::Report, &StageRecord { key, result })?;
     let files = written.files.len();
     Ok(Reported::of(written, files))
+}
+
+/// The report that stands on the disk, or why it is to be written anew.
+fn standing(study: &Study, key: &str, store: &mut Store) -> Result<Result<Written, &'static str>, PipelineError> {
+    let Some(record) = store.stage(RecordedStage::Report)?.filter(|record| record.key == key) else {
+        return Ok(Err("there is none of this study, its inputs and this version of the program"));
+    };
+    match serde_json::from_str::<Written>(&record.result) {
+        Ok(written) if report::FILES.iter().all(|name| is_as_written(study, &written, name)) => Ok(Ok(written)),
+        _ => Ok(Err("its files are not as they were written")),
+    }
+}
+
+/// Why the report would be written anew; `None` where it stands.
+pub(crate) fn why_renewed(
+    study: &Study,
+    inputs: &Inputs,
+    store: &mut Store,
+) -> Result<Option<&'static str>, PipelineError> {
+    let key = freshness::report_key(study, inputs, store)?;
+    Ok(standing(study, &key, store)?.err())
 }
 
 /// Whether a file that a report can have is there as it was written, or not there as it was not.

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 use store::{RunEnd, RunStage, Store};
-use study::Study;
+use study::{Study, keys};
 
 use crate::lock::RunLock;
 use crate::record::{input_hash, now};
@@ -134,6 +134,7 @@ impl Running<'_> {
             let row =
                 RunStage { stage: stage.name().to_owned(), computed, withdrawn, total, duration_s: end.duration_s };
             store.put_run_stage(id, &row)?;
+            store.put_settings(stage.name(), &keys::settings(self.study, stage.name()))?;
         }
         progress.stage_ended(&end);
         Ok(())

@@ -123,6 +123,19 @@ impl Store {
         Ok(store)
     }
 
+    /// An empty database that goes with the value: what there is where there is none yet.
+    ///
+    /// # Errors
+    /// [`StoreError::Schema`].
+    pub fn in_memory() -> Result<Self, StoreError> {
+        let path = Path::new(":memory:");
+        let mut store = Self::connect(path, &SqliteConnectOptions::new().filename(path), false)?;
+        let Self { runtime, connection, .. } = &mut store;
+        let migrated = runtime.block_on(MIGRATIONS.run(connection));
+        migrated.map_err(|source| StoreError::Schema { path: path.to_owned(), source })?;
+        Ok(store)
+    }
+
     /// Opens an existing database for reading. One of an earlier version is brought up to date first, which needs to write.
     ///
     /// # Errors

@@ -51,6 +51,12 @@ pub struct GridChange {
 }
 
 impl StoredGrid {
+    /// For each of a study's designs the place of the stored one that is the same but for its name.
+    #[must_use]
+    pub fn same_designs(&self, wanted: &[DesignRow]) -> Vec<Option<usize>> {
+        same_designs(&self.designs, wanted)
+    }
+
     /// Place of the design with an id of the database.
     pub(crate) fn design(&self, id: i64) -> Result<usize, sqlx::Error> {
         self.design_ids.iter().position(|i| *i == id).ok_or(sqlx::Error::RowNotFound)

@@ -2,8 +2,9 @@
 
 use sqlx::Row;
 use sqlx::sqlite::SqliteConnection;
+use std::collections::BTreeMap;
 
-use crate::row::Insert;
+use crate::row::{Insert, begin};
 use crate::{Store, StoreError};
 
 /// A stage that is left out of a run while what it was completed for is as it was.
@@ -67,6 +68,37 @@ impl Store {
         self.drive(async |c| {
             sqlx::query("DELETE FROM stage_record WHERE stage = ?").bind(stage.name()).execute(c).await?;
             Ok(())
+        })
+    }
+
+    /// What the study said when a stage was last done, by name; nothing where it never was.
+    ///
+    /// # Errors
+    /// [`StoreError::Statement`].
+    pub fn settings(&mut self, stage: &str) -> Result<BTreeMap<String, String>, StoreError> {
+        self.drive(async |c| {
+            let sql = "SELECT name, value FROM stage_setting WHERE stage = ? ORDER BY name";
+            let rows = sqlx::query(sql).bind(stage).fetch_all(c).await?;
+            rows.iter().map(|r| Ok((r.try_get("name")?, r.try_get("value")?))).collect()
+        })
+    }
+
+    /// Records what the study said when a stage was done.
+    ///
+    /// # Errors
+    /// [`StoreError::Statement`].
+    pub fn put_settings(&mut self, stage: &str, settings: &BTreeMap<String, String>) -> Result<(), StoreError> {
+        if self.settings(stage)? == *settings {
+            return Ok(());
+        }
+        self.drive(async |c| {
+            let mut tx = begin(c).await?;
+            sqlx::query("DELETE FROM stage_setting WHERE stage = ?").bind(stage).execute(&mut *tx).await?;
+            for (name, value) in settings {
+                let row = Insert::into("stage_setting").set("stage", stage)?.set("name", name.as_str())?;
+                row.set("value", value.as_str())?.execute(&mut tx).await?;
+            }
+            Ok(tx.commit().await?)
         })
     }
 

@@ -1,7 +1,9 @@
 //! Keys: what a stored thing was made from, as BLAKE3 hashes that do not depend on place, time or layout of a file.
 
 use cabin::{ComfortWindow, Vehicle};
+use simulate::SIMULATION_VERSION;
 use solve::Method;
+use std::collections::BTreeMap;
 use store::DesignRow;
 
 use crate::Study;
@@ -48,18 +50,93 @@ pub(crate) fn design_key(row: &DesignRow, vehicle: &Vehicle, method: Method, win
 /// Key of the reading of a mission: its content, and how segments are made of it.
 #[must_use]
 pub fn mission_key(study: &Study, blake3: &str) -> String {
-    let options = &study.missions;
-    let settings = format!("{} {} {}", options.segment_s, options.door_open_share, options.keep_partial);
-    hash(&[blake3, &settings, &READER_VERSION.to_string()])
+    hash(&[blake3, &values(&mission_settings(study)), &READER_VERSION.to_string()])
 }
 
 /// Key of the reading of a weather or shadow file: its content, and what samples are made with besides.
 #[must_use]
 pub fn surroundings_key(study: &Study, blake3: &str) -> String {
+    hash(&[blake3, &values(&surroundings_settings(study)), &READER_VERSION.to_string()])
+}
+
+/// A part of a key: its name as in the study file, and its value.
+type Setting = (&'static str, String);
+
+fn mission_settings(study: &Study) -> [Setting; 3] {
+    let options = &study.missions;
+    [
+        ("missions.segment_s", options.segment_s.to_string()),
+        ("missions.door_open_share", options.door_open_share.to_string()),
+        ("missions.keep_partial", options.keep_partial.to_string()),
+    ]
+}
+
+fn surroundings_settings(study: &Study) -> [Setting; 6] {
     let w = &study.weather;
-    let settings =
-        format!("{:?} {} {:?} {:?} {:?} {}", w.format, w.max_gap_s, w.split, w.station, study.site, study.zone);
-    hash(&[blake3, &settings, &READER_VERSION.to_string()])
+    [
+        ("weather.format", format!("{:?}", w.format)),
+        ("weather.max_gap_s", w.max_gap_s.to_string()),
+        ("weather.split", format!("{:?}", w.split)),
+        ("weather.station", format!("{:?}", w.station)),
+        ("location", format!("{:?}", study.site)),
+        ("location.time_zone", study.zone.to_string()),
+    ]
+}
+
+fn values(settings: &[Setting]) -> String {
+    settings.iter().map(|(_, value)| value.as_str()).collect::<Vec<_>>().join(" ")
+}
+
+/// What study file and program say that enters the keys of a stage (`ingest`, `shade`, `solve`, `simulate`), by name: two of
+/// them tell what has changed. Nothing for another stage.
+#[must_use]
+pub fn settings(study: &Study, stage: &str) -> BTreeMap<String, String> {
+    let named = |settings: &[Setting]| settings.iter().map(|(n, v)| ((*n).to_owned(), v.clone())).collect();
+    let windows = |places: &mut dyn Iterator<Item = usize>| {
+        let windows = places.map(|i| study.grid.windows()[i]);
+        windows.map(|w| format!("{} … {}", w.pmv_min(), w.pmv_max())).collect::<Vec<_>>().join(", ")
+    };
+    let mut settings: BTreeMap<String, String> = match stage {
+        "ingest" => named(&mission_settings(study)),
+        "shade" => named(&surroundings_settings(study)),
+        "solve" => {
+            let mut settings = flattened("vehicle", &study.vehicle);
+            for row in &study.design_rows {
+                let mut of_design =
+                    |key: &str, value: String| settings.insert(format!("designs.{:?}.{key}", row.name), value);
+                of_design("heating", row.heating.name().to_owned());
+                of_design("heating_cop", row.heating_cop.clone());
+                of_design("cooling_cop", row.cooling_cop.clone());
+                of_design("radiant_heaters", row.devices.radiant_heaters.to_string());
+                of_design("air_curtain", row.devices.air_curtain.to_string());
+            }
+            settings.insert("comfort".to_owned(), windows(&mut (0..study.grid.windows().len())));
+            settings.insert("method".to_owned(), study.method.name().to_owned());
+            settings
+        }
+        "simulate" => {
+            let mut settings = flattened("dynamics", &study.dynamics);
+            settings.insert("simulation".to_owned(), windows(&mut study.simulated_windows.iter().copied()));
+            settings
+        }
+        _ => return BTreeMap::new(),
+    };
+    let version = match stage {
+        "ingest" | "shade" => READER_VERSION.to_string(),
+        "solve" => study.method.version(),
+        _ => SIMULATION_VERSION.to_string(),
+    };
+    settings.insert("the program's version of it".to_owned(), version);
+    settings
+}
+
+/// The fields of a plain struct by name.
+fn flattened(section: &str, value: &impl serde::Serialize) -> BTreeMap<String, String> {
+    let fields = match serde_json::to_value(value) {
+        Ok(serde_json::Value::Object(fields)) => fields,
+        _ => serde_json::Map::new(),
+    };
+    fields.into_iter().map(|(name, value)| (format!("{section}.{name}"), value.to_string())).collect()
 }
 
 /// Key of a file that was never read: known again by its reason.
