@@ -114,7 +114,7 @@ fn cli_a_mission_that_cannot_be_simulated_is_a_row_with_a_reason() {
     }
     // No window of this bus is out of reach, so a row is made that says so.
     scratch.tamper(
-        "UPDATE optimum_point SET status = 2 WHERE sample_id = (SELECT min(sample_id) FROM optimum_point)
+        "UPDATE optimum_point SET status = 2, row_check = NULL WHERE sample_id = (SELECT min(sample_id) FROM optimum_point)
             AND design_id = (SELECT design_id FROM hvac_design WHERE name = 'hp')
             AND window_id = (SELECT window_id FROM comfort_window WHERE pmv_limit = 1.0)",
     );

@@ -85,6 +85,7 @@ pub fn run(study: &Study, stages: &[Stage], options: &Options, progress: &dyn Pr
     let mut store = if only_report { open::for_reading(study)? } else { open::for_writing(study)? };
     let study = &as_solved(study, stages, &mut store)?;
     let inputs = Inputs::new(study, options.rehash);
+    check_stored(&mut store, options.rehash, progress)?;
     let run_id = if only_report { None } else { Some(store.start_run(now(), PROGRAM_VERSION, &study.hash)?) };
     let mut running = Running { study, stages, inputs, run_id, headline: Vec::new() };
     let outcome = stages.iter().try_for_each(|stage| running.stage(*stage, &mut store, progress));
@@ -169,6 +170,17 @@ impl Running<'_> {
                 Ok(reported.work)
             }
         }
+    }
+}
+
+/// Refuses a database that is damaged: what everybody reads, or all of it. What a stage builds on is looked at there.
+fn check_stored(store: &mut Store, all: bool, progress: &dyn Progress) -> Result<(), PipelineError> {
+    if !all {
+        return Ok(store.check_averages()?);
+    }
+    match store.check_all(&|| progress.stop())?.damaged.into_iter().next() {
+        Some(what) => Err(store.damaged(what).into()),
+        None => Ok(()),
     }
 }
 

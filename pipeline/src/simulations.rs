@@ -88,6 +88,7 @@ pub(crate) fn simulate(
         return Err(PipelineError::Interrupted);
     }
     traces::trace(&basis, store, &wanted)?;
+    store.check_simulations()?;
     store.complete_simulations(&StageRecord { key, result: basis.missions.len().to_string() })?;
     Ok(work(study, simulated, basis.missions.len(), stale.len()))
 }

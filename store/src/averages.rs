@@ -3,6 +3,7 @@
 
 use sqlx::sqlite::SqliteConnection;
 
+use crate::checks::{commit, seal_averages};
 use crate::row::begin;
 use crate::stages::{RecordedStage, StageRecord, record_stage};
 use crate::{Store, StoreError};
@@ -199,8 +200,9 @@ impl Store {
             for &sql in renew {
                 execute(&mut tx, sql).await?;
             }
+            seal_averages(&mut tx).await?;
             record_stage(&mut tx, stage, record).await?;
-            Ok(tx.commit().await?)
+            commit(tx).await
         })
     }
 }

@@ -9,6 +9,8 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use tokio::runtime::Runtime;
 
+use crate::checks::Damage;
+
 static MIGRATIONS: Migrator = sqlx::migrate!("../migrations");
 
 /// How long a statement waits for another writer to finish its transaction.
@@ -21,6 +23,7 @@ pub struct Store {
     pub(crate) connection: SqliteConnection,
     path: PathBuf,
     read_only: bool,
+    refuses_damage: bool,
 }
 
 /// The database cannot be used.
@@ -61,7 +64,26 @@ pub enum StoreError {
         /// What does not fit.
         source: MigrateError,
     },
+    /// Something stored is not as it was written.
+    #[error(
+        "the database {path} is damaged: {what} is not as it was written; restore the last backup, or move the file away: a run \
+         makes it anew (`busclimate verify` looks at all of it)"
+    )]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// Table, and row where it is known.
+        what: String,
+    },
     /// A statement failed.
+    #[error("the database {path} refused a statement: {error}")]
+    Refused {
+        /// The file.
+        path: PathBuf,
+        /// What SQLite says.
+        error: sqlx::Error,
+    },
+    /// The same on its way to where the file is known.
     #[error("the database refused a statement: {0}")]
     Statement(#[from] sqlx::Error),
     /// A sample refers to a mission file that is not stored.
@@ -70,6 +92,27 @@ pub enum StoreError {
     /// The thread that drives the database could not start.
     #[error("cannot start the database runtime: {0}")]
     Runtime(std::io::Error),
+}
+
+/// What SQLite calls a file whose pages do not fit together, and one that is no database (`SQLITE_CORRUPT`, `SQLITE_NOTADB`).
+const MALFORMED: [u32; 2] = [11, 26];
+
+impl StoreError {
+    /// The error of a statement with the file's name; values that mean nothing are damage.
+    fn of(self, path: &Path) -> Self {
+        let Self::Statement(error) = self else { return self };
+        let malformed = match &error {
+            sqlx::Error::Database(e) => {
+                // The lower byte is the kind, the upper ones say more.
+                let code = e.code().and_then(|code| code.parse::<u32>().ok());
+                code.is_some_and(|code| MALFORMED.contains(&(code & 0xff)))
+            }
+            sqlx::Error::ColumnDecode { .. } => true,
+            _ => false,
+        };
+        let path = path.to_owned();
+        if malformed { Self::Damaged { path, what: error.to_string() } } else { Self::Refused { path, error } }
+    }
 }
 
 /// The file whose lock the writer of a database holds.
@@ -222,7 +265,7 @@ impl Store {
         let options = options.clone().disable_statement_logging();
         let connection =
             runtime.block_on(options.connect()).map_err(|source| StoreError::Open { path: path.to_owned(), source })?;
-        Ok(Self { runtime, connection, path: path.to_owned(), read_only })
+        Ok(Self { runtime, connection, path: path.to_owned(), read_only, refuses_damage: true })
     }
 
     /// Reads several things as they are at one moment, whatever is written meanwhile.
@@ -276,13 +319,32 @@ impl Store {
         Ok(self.runtime.block_on(self.connection.close())?)
     }
 
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Reads damaged rows as they are from now on: for whoever looks at all checks.
+    pub fn report_damage(&mut self) {
+        self.refuses_damage = false;
+    }
+
+    /// Runs a future that works on the connection, told what is done about damaged rows.
+    pub(crate) fn drive_checked<T>(
+        &mut self,
+        work: impl AsyncFnOnce(&mut SqliteConnection, Damage<'_>) -> Result<T, StoreError>,
+    ) -> Result<T, StoreError> {
+        let Self { runtime, connection, path, refuses_damage, .. } = self;
+        let damage = if *refuses_damage { Damage::Refused(path) } else { Damage::Reported };
+        block_on(runtime, work(connection, damage)).map_err(|error| error.of(path))
+    }
+
     /// Runs a future that works on the connection.
     pub(crate) fn drive<T>(
         &mut self,
         work: impl AsyncFnOnce(&mut SqliteConnection) -> Result<T, StoreError>,
     ) -> Result<T, StoreError> {
-        let Self { runtime, connection, .. } = self;
-        block_on(runtime, work(connection))
+        let Self { runtime, connection, path, .. } = self;
+        block_on(runtime, work(connection)).map_err(|error| error.of(path))
     }
 }
 

@@ -6,6 +6,7 @@ use sqlx::Row;
 use sqlx::sqlite::{SqliteConnection, SqliteRow};
 use std::collections::BTreeMap;
 
+use crate::checks::{commit, whole};
 use crate::row::{Insert, begin, count, optional_time, time, time_text, word};
 use crate::{Store, StoreError};
 
@@ -26,11 +27,12 @@ impl Store {
     /// # Errors
     /// [`StoreError::Statement`].
     pub fn known_files(&mut self, kind: FileKind) -> Result<BTreeMap<String, KnownFile>, StoreError> {
-        self.drive(async |c| {
-            let sql = "SELECT f.path, f.reading_key, f.blake3, s.bytes, s.modified_ns, s.inode
+        self.drive_checked(async |c, damage| {
+            let sql = "SELECT f.*, s.bytes AS stamp_bytes, s.modified_ns, s.inode
                 FROM source_file AS f LEFT JOIN file_stamp AS s USING (source_file_id)
                 WHERE f.kind = ? ORDER BY f.path";
             let rows = sqlx::query(sql).bind(kind.name()).fetch_all(c).await?;
+            whole(damage, "source_file", &rows)?;
             rows.iter()
                 .map(|r| {
                     let (reading_key, blake3) = (r.try_get("reading_key")?, r.try_get("blake3")?);
@@ -61,7 +63,7 @@ impl Store {
             let mut tx = begin(c).await?;
             sqlx::query("DELETE FROM source_file WHERE path = ?").bind(to).execute(&mut *tx).await?;
             sqlx::query("UPDATE source_file SET path = ? WHERE path = ?").bind(to).bind(from).execute(&mut *tx).await?;
-            Ok(tx.commit().await?)
+            commit(tx).await
         })
     }
 
@@ -74,7 +76,7 @@ impl Store {
         self.drive(async |c| {
             let mut tx = begin(c).await?;
             replace_file(&mut tx, file, reading_key).await?;
-            Ok(tx.commit().await?)
+            commit(tx).await
         })
     }
 
@@ -87,7 +89,7 @@ impl Store {
         self.drive(async |c| {
             let mut tx = begin(c).await?;
             let forgotten = forget_others(&mut tx, known.keys(), paths).await?;
-            tx.commit().await?;
+            commit(tx).await?;
             Ok(forgotten)
         })
     }
@@ -110,31 +112,32 @@ impl Store {
     /// # Errors
     /// [`StoreError::Statement`].
     pub fn files(&mut self) -> Result<Vec<FileRecord>, StoreError> {
-        self.drive(async |c| {
-            let sql = "SELECT source_file_id, kind, count, line, column_name, message FROM data_quality
-                ORDER BY source_file_id, position";
+        self.drive_checked(async |c, damage| {
+            let sql = "SELECT * FROM data_quality ORDER BY source_file_id, position";
             let mut findings: BTreeMap<i64, Vec<Finding>> = BTreeMap::new();
-            for r in sqlx::query(sql).fetch_all(&mut *c).await? {
+            let rows = sqlx::query(sql).fetch_all(&mut *c).await?;
+            whole(damage, "data_quality", &rows)?;
+            for r in &rows {
                 let line: Option<i64> = r.try_get("line")?;
                 findings.entry(r.try_get("source_file_id")?).or_default().push(Finding {
-                    kind: word(&r, "kind", FindingKind::from_name)?,
-                    count: count(&r, "count")?,
+                    kind: word(r, "kind", FindingKind::from_name)?,
+                    count: count(r, "count")?,
                     line: line.map(i64::cast_unsigned),
                     column: r.try_get("column_name")?,
                     message: r.try_get("message")?,
                 });
             }
-            let sql = "SELECT f.source_file_id, f.path, f.kind, f.blake3, f.bytes AS content_bytes, f.rows, f.first_utc, f.last_utc,
-                    f.outcome = 'accepted' AS accepted, s.bytes, s.modified_ns, s.inode
+            let sql = "SELECT f.*, f.outcome = 'accepted' AS accepted, s.bytes AS stamp_bytes, s.modified_ns, s.inode
                 FROM source_file AS f LEFT JOIN file_stamp AS s USING (source_file_id) ORDER BY f.kind, f.path";
             let rows = sqlx::query(sql).fetch_all(c).await?;
+            whole(damage, "source_file", &rows)?;
             rows.iter()
                 .map(|r| {
                     Ok(FileRecord {
                         path: r.try_get("path")?,
                         kind: word(r, "kind", FileKind::from_name)?,
                         blake3: r.try_get("blake3")?,
-                        bytes: count(r, "content_bytes")?,
+                        bytes: count(r, "bytes")?,
                         rows: count(r, "rows")?,
                         first: optional_time(r, "first_utc")?,
                         last: optional_time(r, "last_utc")?,
@@ -227,7 +230,7 @@ async fn insert_stamp(c: &mut SqliteConnection, file: i64, stamp: &FileStamp) ->
 }
 
 fn stamp(r: &SqliteRow) -> Result<Option<FileStamp>, sqlx::Error> {
-    let Some(bytes) = r.try_get::<Option<i64>, _>("bytes")? else { return Ok(None) };
+    let Some(bytes) = r.try_get::<Option<i64>, _>("stamp_bytes")? else { return Ok(None) };
     let (bytes, inode) = (bytes.cast_unsigned(), count(r, "inode")?);
     Ok(Some(FileStamp { bytes, modified_ns: r.try_get("modified_ns")?, inode }))
 }

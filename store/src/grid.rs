@@ -6,6 +6,7 @@ use solve::Method;
 use sqlx::Row;
 use sqlx::sqlite::{SqliteConnection, SqliteRow};
 
+use crate::checks::{commit, whole};
 use crate::row::{Insert, begin, window, word};
 use crate::{Store, StoreError};
 
@@ -74,15 +75,19 @@ impl Store {
     /// # Errors
     /// [`StoreError::Statement`].
     pub fn grid(&mut self) -> Result<StoredGrid, StoreError> {
-        self.drive(async |c| {
+        self.drive_checked(async |c, damage| {
             let mut grid = StoredGrid::default();
-            for r in sqlx::query("SELECT * FROM hvac_design ORDER BY position").fetch_all(&mut *c).await? {
+            let rows = sqlx::query("SELECT * FROM hvac_design ORDER BY position").fetch_all(&mut *c).await?;
+            whole(damage, "hvac_design", &rows)?;
+            for r in &rows {
                 grid.design_ids.push(r.try_get("design_id")?);
-                grid.designs.push(design(&r)?);
+                grid.designs.push(design(r)?);
             }
-            for r in sqlx::query("SELECT * FROM comfort_window ORDER BY position").fetch_all(c).await? {
+            let rows = sqlx::query("SELECT * FROM comfort_window ORDER BY position").fetch_all(c).await?;
+            whole(damage, "comfort_window", &rows)?;
+            for r in &rows {
                 grid.window_ids.push(r.try_get("window_id")?);
-                grid.windows.push(window(&r)?);
+                grid.windows.push(window(r)?);
             }
             Ok(grid)
         })
@@ -139,7 +144,7 @@ impl Store {
                     .await?;
                 change.grid.window_ids.push(row.try_get("window_id")?);
             }
-            tx.commit().await?;
+            commit(tx).await?;
             (change.grid.designs, change.grid.windows) = (designs.to_vec(), windows.to_vec());
             Ok(change)
         })

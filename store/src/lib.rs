@@ -5,6 +5,7 @@
 //! its views, described in `docs/database.md`.
 
 mod averages;
+mod checks;
 mod connection;
 mod files;
 mod grid;
@@ -19,6 +20,7 @@ mod traces;
 mod verification;
 mod views;
 
+pub use checks::Checked;
 pub use connection::{Store, StoreError, lock_path};
 pub use files::KnownFile;
 pub use grid::{DesignRow, GridChange, StoredGrid};

@@ -6,6 +6,7 @@ use ingest::mission::{MissionReading, Segment};
 use sqlx::Row;
 use sqlx::sqlite::{SqliteConnection, SqliteRow};
 
+use crate::checks::{commit, whole};
 use crate::files::replace_file;
 use crate::row::{Insert, begin, count, time, time_text};
 use crate::{Store, StoreError};
@@ -33,7 +34,7 @@ impl Store {
                 let row = Insert::replacing("mission_load").set("source_file_id", id)?;
                 row.set("loads", encode_loads(&reading.loads))?.execute(&mut tx).await?;
             }
-            Ok(tx.commit().await?)
+            commit(tx).await
         })
     }
 
@@ -42,13 +43,12 @@ impl Store {
     /// # Errors
     /// [`StoreError::Statement`].
     pub fn segments(&mut self) -> Result<Vec<StoredSegment>, StoreError> {
-        self.drive(async |c| {
-            let sql =
-                "SELECT f.path AS source_path, f.reading_key, g.mission, g.bus, g.segment, g.start_utc, g.duration_s,
-                    g.passengers, g.door_open_fraction, g.first_line, g.last_line, g.excluded
+        self.drive_checked(async |c, damage| {
+            let sql = "SELECT g.*, f.path AS source_path, f.reading_key
                 FROM mission_segment AS g JOIN source_file AS f USING (source_file_id)
                 WHERE f.outcome = 'accepted' ORDER BY g.mission, g.segment";
             let rows = sqlx::query(sql).fetch_all(c).await?;
+            whole(damage, "mission_segment", &rows)?;
             rows.iter()
                 .map(|r| {
                     let excluded: Option<String> = r.try_get("excluded")?;
@@ -74,10 +74,11 @@ impl Store {
     /// # Errors
     /// [`StoreError::Statement`].
     pub fn loads(&mut self, source_path: &str) -> Result<Vec<LoadChange>, StoreError> {
-        self.drive(async |c| {
-            let sql = "SELECT loads FROM mission_load JOIN source_file USING (source_file_id) WHERE path = ?";
-            let row = sqlx::query(sql).bind(source_path).fetch_optional(c).await?;
-            let bytes: Vec<u8> = row.map(|r| r.try_get("loads")).transpose()?.unwrap_or_default();
+        self.drive_checked(async |c, damage| {
+            let sql = "SELECT l.* FROM mission_load AS l JOIN source_file AS f USING (source_file_id) WHERE f.path = ?";
+            let rows = sqlx::query(sql).bind(source_path).fetch_all(c).await?;
+            whole(damage, "mission_load", &rows)?;
+            let bytes: Vec<u8> = rows.first().map(|r| r.try_get("loads")).transpose()?.unwrap_or_default();
             Ok(bytes.chunks_exact(LOAD_BYTES).map(decode_load).collect())
         })
     }

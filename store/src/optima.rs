@@ -2,15 +2,17 @@
 
 use cabin::{Devices, Infeasible, OperatingMode, Operation, Optimum, Outcome, StandardRange, Temperatures};
 use solve::nlp::Effort;
+use sqlx::error::BoxDynError;
 use sqlx::sqlite::{SqliteArguments, SqliteConnection, SqliteRow};
 use sqlx::{Arguments, AssertSqlSafe, Row};
 use std::collections::{BTreeMap, BTreeSet};
 
+use crate::checks::{RowHash, commit, whole};
 use crate::row::{begin, count, insert_sql};
 use crate::{Store, StoreError, StoredGrid};
 
 /// The columns, in the order in which [`add_row`] gives their values.
-const COLUMNS: [&str; 22] = [
+const COLUMNS: [&str; 23] = [
     "sample_id",
     "design_id",
     "window_id",
@@ -33,6 +35,7 @@ const COLUMNS: [&str; 22] = [
     "runner_up_excess_w",
     "kkt_residual",
     "subproblem_count",
+    "row_check",
 ];
 /// Rows of one INSERT: from here on a statement does not get cheaper by the row.
 const ROWS: usize = 400;
@@ -141,10 +144,11 @@ impl Store {
     /// # Errors
     /// [`StoreError::Statement`].
     pub fn optima(&mut self, grid: &StoredGrid, first: i64, last: i64) -> Result<Vec<StoredOptimum>, StoreError> {
-        self.drive(async |c| {
+        self.drive_checked(async |c, damage| {
             let sql = "SELECT * FROM optimum_point WHERE sample_id BETWEEN ? AND ?
                 ORDER BY sample_id, design_id, window_id";
             let rows = sqlx::query(sql).bind(first).bind(last).fetch_all(c).await?;
+            whole(damage, "optimum_point", &rows)?;
             rows.iter()
                 .map(|r| {
                     Ok(StoredOptimum {
@@ -200,7 +204,7 @@ impl Store {
                 written?;
                 chunk = next?;
             }
-            Ok(tx.commit().await?)
+            commit(tx).await
         })
     }
 }
@@ -214,10 +218,11 @@ struct Chunk {
 
 fn encode<'a>(grid: &StoredGrid, points: &mut impl Iterator<Item = NewOptimum<'a>>) -> Result<Chunk, StoreError> {
     let mut chunk = Chunk::default();
+    let mut hash = RowHash::default();
     chunk.arguments.reserve(ROWS * COLUMNS.len(), 0);
     for point in points.take(ROWS) {
         let keys = [point.sample_id, grid.design_ids[point.design], grid.window_ids[point.window]];
-        add_row(&mut chunk.arguments, keys, point.outcome, point.effort).map_err(sqlx::Error::Encode)?;
+        add_row(&mut chunk.arguments, &mut hash, keys, point.outcome, point.effort).map_err(sqlx::Error::Encode)?;
         chunk.rows += 1;
     }
     Ok(chunk)
@@ -233,26 +238,58 @@ fn insert_statement(rows: usize) -> String {
     insert_sql("INSERT", "optimum_point", &COLUMNS, rows)
 }
 
+/// Values of a row, in the order of [`COLUMNS`], on their way into a statement and into the row's check.
+struct RowValues<'a> {
+    arguments: &'a mut SqliteArguments,
+    hash: &'a mut RowHash,
+}
+
+impl RowValues<'_> {
+    fn integer(&mut self, value: Option<i64>) -> Result<(), BoxDynError> {
+        self.hash.integer(value);
+        self.arguments.add(value)
+    }
+
+    fn real(&mut self, value: Option<f64>) -> Result<(), BoxDynError> {
+        self.hash.real(value);
+        self.arguments.add(value)
+    }
+}
+
 fn add_row(
-    a: &mut SqliteArguments,
+    arguments: &mut SqliteArguments,
+    hash: &mut RowHash,
     keys: [i64; 3],
     outcome: &Outcome,
     effort: Option<Effort>,
-) -> Result<(), sqlx::error::BoxDynError> {
+) -> Result<(), BoxDynError> {
+    let mut values = RowValues { arguments, hash };
     let status = STATUSES.iter().find(|(_, other)| other == outcome).map_or(SOLVED, |s| s.0);
     for key in keys.into_iter().chain([status]) {
-        a.add(key)?;
+        values.integer(Some(key))?;
     }
-    let Outcome::Solved(o, runner_up_excess_w) = outcome else {
-        for _ in 4..COLUMNS.len() - 2 {
-            a.add(None::<f64>)?;
+    match outcome {
+        Outcome::Solved(operation, runner_up_excess_w) => {
+            add_operation(&mut values, operation)?;
+            values.real(*runner_up_excess_w)?;
         }
-        return add_effort(a, effort);
-    };
+        _ => {
+            for _ in 4..COLUMNS.len() - 3 {
+                values.real(None)?;
+            }
+        }
+    }
+    values.real(effort.map(|e| e.kkt_residual))?;
+    values.integer(effort.map(|e| i64::from(e.subproblems)))?;
+    let check = hash.finish();
+    arguments.add(check)
+}
+
+fn add_operation(values: &mut RowValues<'_>, o: &Operation) -> Result<(), BoxDynError> {
     let outside = o.standard_range == StandardRange::Outside;
     let (curtain, heaters) = (o.devices.air_curtain, o.devices.radiant_heaters);
     for choice in [i64::from(o.mode.number()), i64::from(curtain), i64::from(heaters), i64::from(outside)] {
-        a.add(choice)?;
+        values.integer(Some(choice))?;
     }
     let t = o.temperatures;
     for value in [
@@ -268,15 +305,9 @@ fn add_row(
         o.mean_radiant_temperature_k,
         o.pmv,
     ] {
-        a.add(value)?;
+        values.real(Some(value))?;
     }
-    a.add(*runner_up_excess_w)?;
-    add_effort(a, effort)
-}
-
-fn add_effort(a: &mut SqliteArguments, effort: Option<Effort>) -> Result<(), sqlx::error::BoxDynError> {
-    a.add(effort.map(|e| e.kkt_residual))?;
-    a.add(effort.map(|e| i64::from(e.subproblems)))
+    Ok(())
 }
 
 /// The outcome of a row; `None` where a value that its status asks for is missing.

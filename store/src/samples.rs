@@ -7,6 +7,7 @@ use sqlx::Row;
 use sqlx::sqlite::{SqliteConnection, SqliteRow};
 use std::collections::BTreeMap;
 
+use crate::checks::{Damage, commit, whole};
 use crate::files::{forget_others, replace_file};
 use crate::missions::segment;
 use crate::row::{Insert, begin, count, time_text};
@@ -58,7 +59,7 @@ impl Store {
                 .iter()
                 .map(|r| Ok((r.try_get("path")?, r.try_get("source_file_id")?)))
                 .collect::<Result<_, sqlx::Error>>()?;
-            let mut stored = stored_samples(&mut tx).await?;
+            let mut stored = stored_samples(&mut tx, Damage::Reported).await?;
             let mut changed = 0;
             for sample in samples {
                 let unknown = || StoreError::UnknownFile(sample.segment.mission.clone());
@@ -85,7 +86,7 @@ impl Store {
                     Insert::into("excluded_segment").set("mission", e.mission.as_str())?.set("segment", e.segment)?;
                 row.set("start_utc", time_text(e.start))?.set("reason", e.reason.as_str())?.execute(&mut tx).await?;
             }
-            tx.commit().await?;
+            commit(tx).await?;
             Ok((changed, stored.len() as u64))
         })
     }
@@ -95,7 +96,7 @@ impl Store {
     /// # Errors
     /// [`StoreError::Statement`].
     pub fn samples(&mut self) -> Result<Vec<Sample>, StoreError> {
-        self.drive(async |c| Ok(stored_samples(c).await?.into_values().collect()))
+        self.drive_checked(async |c, damage| Ok(stored_samples(c, damage).await?.into_values().collect()))
     }
 }
 
@@ -150,8 +151,9 @@ pub(crate) fn sample(r: &SqliteRow) -> Result<Sample, sqlx::Error> {
     })
 }
 
-async fn stored_samples(c: &mut SqliteConnection) -> Result<BTreeMap<i64, Sample>, StoreError> {
+async fn stored_samples(c: &mut SqliteConnection, damage: Damage<'_>) -> Result<BTreeMap<i64, Sample>, StoreError> {
     let sql = "SELECT s.*, f.path AS source_path FROM hourly_sample AS s JOIN source_file AS f USING (source_file_id)";
     let rows = sqlx::query(sql).fetch_all(c).await?;
+    whole(damage, "hourly_sample", &rows)?;
     rows.iter().map(sample).map(|s| s.map(|s| (s.id, s)).map_err(StoreError::from)).collect()
 }

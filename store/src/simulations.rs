@@ -5,6 +5,7 @@ use sqlx::Row;
 use sqlx::sqlite::SqliteConnection;
 use std::collections::BTreeMap;
 
+use crate::checks::commit;
 use crate::row::{Insert, begin, count, window};
 use crate::{Store, StoreError, StoredGrid};
 use cabin::ComfortWindow;
@@ -137,7 +138,7 @@ impl Store {
                     .execute(&mut *tx)
                     .await?;
             }
-            Ok(tx.commit().await?)
+            commit(tx).await
         })
     }
 
@@ -151,7 +152,7 @@ impl Store {
             for id in ids {
                 forget(&mut tx, grid, id).await?;
             }
-            Ok(tx.commit().await?)
+            commit(tx).await
         })
     }
 
@@ -170,7 +171,7 @@ impl Store {
                 let file: i64 = found.try_get("source_file_id")?;
                 put(&mut tx, grid, file, row).await?;
             }
-            Ok(tx.commit().await?)
+            commit(tx).await
         })
     }
 

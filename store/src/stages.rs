@@ -4,6 +4,7 @@ use sqlx::Row;
 use sqlx::sqlite::SqliteConnection;
 use std::collections::BTreeMap;
 
+use crate::checks::{RowHash, commit, is_whole};
 use crate::row::{Insert, begin};
 use crate::{Store, StoreError};
 
@@ -45,8 +46,11 @@ impl Store {
     /// [`StoreError::Statement`].
     pub fn stage(&mut self, stage: RecordedStage) -> Result<Option<StageRecord>, StoreError> {
         self.drive(async |c| {
-            let sql = "SELECT stage_key, result FROM stage_record WHERE stage = ?";
+            let sql = "SELECT * FROM stage_record WHERE stage = ?";
             let row = sqlx::query(sql).bind(stage.name()).fetch_optional(c).await?;
+            // A damaged one vouches for nothing.
+            let row = row.map(|r| Ok::<_, sqlx::Error>((is_whole(&r, &mut RowHash::default())?, r))).transpose()?;
+            let row = row.filter(|(is_whole, _)| *is_whole).map(|(_, r)| r);
             let record = row.map(|r| Ok(StageRecord { key: r.try_get("stage_key")?, result: r.try_get("result")? }));
             Ok(record.transpose().map_err(|e: sqlx::Error| e)?)
         })
@@ -57,7 +61,11 @@ impl Store {
     /// # Errors
     /// [`StoreError::Statement`].
     pub fn complete_stage(&mut self, stage: RecordedStage, record: &StageRecord) -> Result<(), StoreError> {
-        self.drive(async |c| record_stage(c, stage, record).await)
+        self.drive(async |c| {
+            let mut tx = begin(c).await?;
+            record_stage(&mut tx, stage, record).await?;
+            commit(tx).await
+        })
     }
 
     /// Forgets that a stage is complete.
@@ -98,7 +106,7 @@ impl Store {
                 let row = Insert::into("stage_setting").set("stage", stage)?.set("name", name.as_str())?;
                 row.set("value", value.as_str())?.execute(&mut tx).await?;
             }
-            Ok(tx.commit().await?)
+            commit(tx).await
         })
     }
 

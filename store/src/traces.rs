@@ -6,6 +6,7 @@ use simulate::TraceMinute;
 use sqlx::Row;
 use sqlx::sqlite::SqliteRow;
 
+use crate::checks::{commit, whole};
 use crate::optima::operation;
 use crate::row::{Insert, begin, window};
 use crate::samples::sample;
@@ -102,7 +103,7 @@ impl Store {
                     insert_minute(id, minute)?.execute(&mut tx).await?;
                 }
             }
-            Ok(tx.commit().await?)
+            commit(tx).await
         })
     }
 
@@ -111,7 +112,7 @@ impl Store {
     /// # Errors
     /// [`StoreError::Statement`].
     pub fn traces(&mut self) -> Result<Vec<MissionTrace>, StoreError> {
-        self.drive(async |c| {
+        self.drive_checked(async |c, damage| {
             let sql = "SELECT t.trace_id, t.label, d.name AS design, w.pmv_min, w.pmv_max, t.of_paper
                 FROM mission_trace AS t JOIN hvac_design AS d USING (design_id) JOIN comfort_window AS w USING (window_id)
                 ORDER BY t.label";
@@ -125,11 +126,14 @@ impl Store {
                         ON p.sample_id = s.sample_id AND p.design_id = t.design_id AND p.window_id = t.window_id
                     WHERE t.trace_id = ? ORDER BY s.segment LIMIT (SELECT segment_count FROM mission_trace WHERE trace_id = ?)";
                 let mut segments = Vec::new();
-                for s in sqlx::query(sql).bind(id).bind(id).fetch_all(&mut *c).await? {
-                    segments.extend(operation(&s)?.map(|o| Ok::<_, sqlx::Error>((sample(&s)?, o))).transpose()?);
+                let rows = sqlx::query(sql).bind(id).bind(id).fetch_all(&mut *c).await?;
+                whole(damage, "hourly_sample", &rows)?;
+                for s in &rows {
+                    segments.extend(operation(s)?.map(|o| Ok::<_, sqlx::Error>((sample(s)?, o))).transpose()?);
                 }
                 let sql = "SELECT * FROM trace_minute WHERE trace_id = ? ORDER BY minute";
                 let minutes = sqlx::query(sql).bind(id).fetch_all(&mut *c).await?;
+                whole(damage, "trace_minute", &minutes)?;
                 traces.push(MissionTrace {
                     label: r.try_get("label")?,
                     design: r.try_get("design")?,

@@ -2,6 +2,7 @@
 
 use chrono::{DateTime, Utc};
 
+use crate::checks::commit;
 use crate::row::{Insert, begin, time_text};
 use crate::{Store, StoreError};
 
@@ -76,7 +77,7 @@ impl Store {
                     .execute(&mut tx)
                     .await?;
             }
-            tx.commit().await?;
+            commit(tx).await?;
             Ok(())
         })
     }

@@ -12,6 +12,31 @@ use std::path::{Path, PathBuf};
 use store::Store;
 use tempfile::TempDir;
 
+/// All that a database says of a study, but for when and by which run.
+pub const CONTENT: [&str; 15] = [
+    "SELECT * FROM sample",
+    "SELECT * FROM optimum",
+    "SELECT design, pmv_min, pmv_max, month, hvac_power_w, heating_power_w, cooling_power_w, sample_count, unsolved_count,
+        lower_count, upper_count, heating_count, cooling_count, outside_range_count FROM monthly_average",
+    "SELECT design, pmv_min, pmv_max, hvac_power_w, heating_power_w, cooling_power_w, sample_count, unsolved_count,
+        unsolved_weight, reduction_vs_ptc FROM annual_average",
+    "SELECT * FROM month_weight",
+    "SELECT * FROM limit_share",
+    "SELECT * FROM simulation",
+    "SELECT design, pmv_min, pmv_max, controller, mean_hvac_power_w, static_mean_hvac_power_w, saturated_fraction,
+        mission_count FROM simulation_annual",
+    "SELECT design, pmv_min, pmv_max, class_order, class, mission_count, mean_hvac_power_w, static_mean_hvac_power_w,
+        warm_start_power_w, mean_max_abs_pmv_15min, saturated_fraction FROM simulation_class",
+    "SELECT * FROM simulation_failure",
+    "SELECT * FROM simulation_trace",
+    "SELECT * FROM excluded_segment",
+    "SELECT path, kind, blake3, bytes, rows, first_utc, last_utc, outcome, reading_key FROM source_file",
+    "SELECT f.path, q.kind, q.count, q.line, q.column_name, q.message, q.position
+        FROM data_quality AS q JOIN source_file AS f USING (source_file_id)",
+    "SELECT name, position, heating, heating_cop, cooling_cop, radiant_heaters, air_curtain, method, design_key
+        FROM hvac_design",
+];
+
 /// A scratch folder with a study in it.
 pub struct Scratch {
     pub folder: TempDir,
@@ -102,26 +127,26 @@ impl Scratch {
     }
 
     /// The rows of a query to the last bit, in a sorted order of their own.
-    pub fn exact(&self, sql: &str) -> Vec<String> {
+    pub fn exact(&self, sql: &str) -> Result<Vec<String>, sqlx::Error> {
         let url = format!("sqlite://{}?mode=ro", self.path("study.db").display());
         let runtime = tokio::runtime::Builder::new_current_thread().enable_time().build().unwrap();
         let rows = runtime.block_on(async {
-            let mut connection = SqliteConnection::connect(&url).await.unwrap();
-            sqlx::query(sqlx::AssertSqlSafe(sql.to_owned())).fetch_all(&mut connection).await.unwrap()
-        });
+            let mut connection = SqliteConnection::connect(&url).await?;
+            sqlx::query(sqlx::AssertSqlSafe(sql.to_owned())).fetch_all(&mut connection).await
+        })?;
         let value = |row: &sqlx::sqlite::SqliteRow, i: usize| {
             let raw = row.try_get_raw(i).unwrap();
             let name = row.column(i).name();
             match raw.type_info().name() {
                 "REAL" => format!("{name}={:?}", row.get_unchecked::<f64, _>(i)),
                 _ if raw.is_null() => format!("{name}=-"),
-                _ => format!("{name}={}", row.get_unchecked::<String, _>(i)),
+                _ => format!("{name}={}", row.get_unchecked::<Vec<u8>, _>(i).escape_ascii()),
             }
         };
         let mut lines: Vec<String> =
             rows.iter().map(|row| (0..row.len()).map(|i| value(row, i)).collect::<Vec<_>>().join(" ")).collect();
         lines.sort_unstable();
-        lines
+        Ok(lines)
     }
 
     /// Changes the database behind the program's back.

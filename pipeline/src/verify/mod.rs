@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use solve::SampleSolver;
 use solve::nlp::{DoorLaw, NlpSolver, VoteForm};
 use std::time::Duration;
-use store::{CheckRow, Store, StoredGrid, StoredOptimum, VerificationRow};
+use store::{CheckRow, Checked, Store, StoredGrid, StoredOptimum, VerificationRow};
 use study::Study;
 
 use crate::lock::RunLock;
@@ -71,6 +71,8 @@ pub fn verify(
     }
     let _lock = RunLock::take(&study.database, wait, progress)?;
     let mut store = open::for_writing(&study)?;
+    store.report_damage();
+    let stored = store.check_all(&|| progress.stop())?;
     let (study, grid) = stored_grid(study, &mut store)?;
     let samples = store.samples()?;
     let context = Context {
@@ -116,7 +118,8 @@ pub fn verify(
     }
     sums.compare(&study, &samples, &mut store, &mut table)?;
 
-    let checks: Vec<CheckRow> = table.rows();
+    let mut checks: Vec<CheckRow> = table.rows();
+    checks.push(as_written(stored));
     let row = VerificationRow {
         finished: now(),
         program_version: PROGRAM_VERSION.to_owned(),
@@ -129,6 +132,19 @@ pub fn verify(
     store.put_verification(&row)?;
     store.close()?;
     Ok(Verification { row, method: study.method, approximation: table.approximation() })
+}
+
+/// What the checks of rows and tables say.
+fn as_written(stored: Checked) -> CheckRow {
+    CheckRow {
+        name: "rows and tables as they were written".to_owned(),
+        checked: stored.count,
+        violations: stored.damaged.len() as u64,
+        largest: 0.0,
+        unit: String::new(),
+        tolerance: "to the bit".to_owned(),
+        first_violation: stored.damaged.into_iter().next(),
+    }
 }
 
 impl Verification {
