@@ -232,3 +232,30 @@ fn cli_weather_that_does_not_cover_the_missions_excludes_them_with_a_reason() {
     let run = scratch.expect(3, &["run"]);
     assert!(run.stderr.contains("no samples") && run.stderr.contains("outside the weather record"), "{}", run.stderr);
 }
+
+#[test]
+fn cli_tables_that_would_fill_the_memory_are_refused_with_the_limit() {
+    let scratch = Scratch::demo(2);
+    let file = format!("ztbus/{}", scratch.missions()[0]);
+    let (mission, shadow) = (scratch.read(&file), scratch.read("shadow.csv"));
+    let run_says = |name: &str, text: &str, status: i32, what: &str| {
+        scratch.write(name, text);
+        let run = scratch.expect(status, &["run"]);
+        assert!(
+            run.stderr.contains(&format!("{name}, {what}")) || run.stderr.contains(&format!("{name}: {what}")),
+            "{}",
+            run.stderr
+        );
+    };
+    let header = mission.lines().next().unwrap();
+    run_says(&file, &format!("{header}{}\n1\n", ",x".repeat(2000)), 1, "line 1: 2026 columns; at most 1000 are read");
+    let long = format!("{header}\n\"{}\",1\n", "x".repeat(70_000));
+    run_says(&file, &long, 1, "line 2: a line of 70004 bytes; at most 65536 are read");
+    let many = format!("{header}\n{}", ",\n".repeat(2_000_000));
+    run_says(&file, &many, 1, "line 1814402: more than 1814400 rows");
+    scratch.write(&file, &mission);
+    let wide = format!("time_utc,shadow_fraction{}\n", ",".repeat(1_000_000));
+    run_says("shadow.csv", &wide, 3, "line 1: a line of 1000024 bytes; at most 65536 are read");
+    scratch.write("shadow.csv", &shadow);
+    scratch.expect(0, &["run"]);
+}

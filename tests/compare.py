@@ -18,7 +18,7 @@ VIEWS = {
     "excluded_segment": "mission, segment",
 }
 # Ids that a database gives as it likes.
-OWN = {"design_id", "window_id"}
+OWN = {"design_id", "window_id", "run_id", "row_check"}
 
 
 AVERAGES = {"annual_average", "monthly_average", "simulation_annual"}

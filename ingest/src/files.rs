@@ -12,6 +12,9 @@ use crate::{Finding, FindingKind, IngestError};
 /// to more, is refused before it fills the memory.
 const MAX_BYTES: u64 = 128 << 20;
 
+/// Largest buffer that a reader keeps for the next file: four usual missions.
+const LARGEST_KEPT: usize = 32 << 20;
+
 /// What tells an unchanged file from a changed one without reading it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FileStamp {
@@ -128,9 +131,11 @@ impl FileReader {
         Ok(Content { stamp: FileStamp::settled(&metadata), ..content })
     }
 
-    /// Takes back the bytes of a file that is done with.
+    /// Takes back the bytes of a file that is done with, unless they are unusually many.
     pub fn recycle(&mut self, content: Content) {
-        self.buffer = content.bytes;
+        if content.bytes.capacity() <= LARGEST_KEPT {
+            self.buffer = content.bytes;
+        }
     }
 }
 
@@ -200,6 +205,37 @@ pub(crate) fn label(base: &Path, path: &Path) -> String {
     path.strip_prefix(base).unwrap_or(path).to_string_lossy().replace('\\', "/")
 }
 
+/// Columns of a table at most: ten times those of ZTBus. Each one costs a parser memory before anybody looks at it.
+const MOST_COLUMNS: usize = 1000;
+/// Longest line in bytes: two hundred times those of ZTBus.
+const LONGEST_LINE: usize = 64 << 10;
+
+/// Refuses a table whose lines would fill the memory while they are parsed: too long, too many, or too many columns.
+///
+/// # Errors
+/// A finding with the line and the limit.
+pub fn check_lines(bytes: &[u8], separator: u8, most_rows: usize) -> Result<(), Finding> {
+    let too_much =
+        |line: usize, message: String| Err(Finding::whole(FindingKind::Unreadable, message).at_line(line as u64));
+    let (mut start, mut line) = (0, 0);
+    for end in memchr::memchr_iter(b'\n', bytes).chain([bytes.len()]) {
+        line += 1;
+        if end - start > LONGEST_LINE {
+            return too_much(line, format!("a line of {} bytes; at most {LONGEST_LINE} are read", end - start));
+        }
+        start = end + 1;
+    }
+    let header = bytes.split(|&b| b == b'\n').next().unwrap_or_default();
+    let columns = memchr::memchr_iter(separator, header).count() + 1;
+    if columns > MOST_COLUMNS {
+        return too_much(1, format!("{columns} columns; at most {MOST_COLUMNS} are read"));
+    }
+    if line > most_rows + 2 {
+        return too_much(most_rows + 2, format!("more than {most_rows} rows; no such file holds as many"));
+    }
+    Ok(())
+}
+
 /// The lower-case extension of a path.
 pub(crate) fn extension(path: &Path) -> String {
     path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default()
@@ -250,7 +286,7 @@ pub(crate) fn find_columns(
                 format!("columns are separated by {other:?}, but {separator:?} belongs there; convert the file");
             return Err(Finding::whole(FindingKind::WrongDelimiter, message).at_line(1));
         }
-        let found = header.iter().map(str::trim).collect::<Vec<_>>().join(", ");
+        let found: String = header.iter().map(str::trim).collect::<Vec<_>>().join(", ").chars().take(400).collect();
         let message = format!("the column is missing; the file has: {found}");
         return Err(Finding::whole(FindingKind::MissingColumn, message).at_line(1).in_column(name));
     }

@@ -18,7 +18,7 @@ mod segments;
 mod telemetry;
 pub mod weather;
 
-pub use files::{Content, FileReader, FileStamp, write_whole};
+pub use files::{Content, FileReader, FileStamp, check_lines, write_whole};
 pub use quality::{ExcludedSegment, ExclusionReason, FileKind, FileRecord, Finding, FindingKind};
 
 use std::path::PathBuf;

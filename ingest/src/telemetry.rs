@@ -7,13 +7,15 @@ use polars::prelude::{
 use std::io::Cursor;
 use std::sync::Arc;
 
-use crate::files::{check_text, find_columns};
+use crate::files::{check_lines, check_text, find_columns};
 use crate::{Finding, FindingKind};
 
 pub(crate) const TIME: &str = "time_unix";
 pub(crate) const PASSENGERS: &str = "itcs_numberOfPassengers";
 pub(crate) const DOOR: &str = "status_doorIsOpen";
 pub(crate) const AMBIENT: &str = "temperature_ambient";
+/// Three rows a second of the longest mission.
+const MOST_ROWS: usize = 3 * 7 * 86_400;
 const COLUMNS: [&str; 4] = [TIME, PASSENGERS, DOOR, AMBIENT];
 
 /// One row of telemetry. `None` is what cannot be read, NaN what is missing.
@@ -47,6 +49,7 @@ impl Telemetry {
     /// Reads the content of a mission file.
     pub fn read(bytes: &[u8]) -> Result<Self, Finding> {
         check_text(bytes, true)?;
+        check_lines(bytes, b',', MOST_ROWS)?;
         let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
         let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(bytes);
         let header = reader.headers().map_err(|e| not_csv(&e))?;

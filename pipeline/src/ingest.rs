@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use store::{KnownFile, Store};
 use study::{Study, keys};
 
+use crate::budget::Budget;
 use crate::in_order::in_order;
 use crate::inputs::{Inputs, refusal_key};
 use crate::{PipelineError, Progress, Work, freshness};
@@ -42,6 +43,7 @@ pub(crate) fn ingest(
         found.missions.iter().enumerate().filter(|(i, _)| !overlapping.contains_key(i)).map(|(_, m)| m).collect();
 
     let before = Before::of(&known);
+    let budget = Budget::new();
     let rehash = inputs.rehash();
     progress.begin("missions", wanted.len() as u64);
     let read = |reader: &mut FileReader, source: &&MissionSource| {
@@ -54,6 +56,8 @@ pub(crate) fn ingest(
         {
             return Read { path, known_as, blake3: file.blake3.clone(), outcome: Outcome::Known(None) };
         }
+        // Held until the content is parsed.
+        let _taken = budget.take(source.bytes());
         let content = match source.load(reader) {
             Ok(content) => content,
             Err(record) => return Read { path, known_as, blake3: String::new(), outcome: Outcome::Unreadable(record) },

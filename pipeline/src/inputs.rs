@@ -1,7 +1,7 @@
 //! The inputs of a run besides missions, each read once.
 
 use ingest::weather::{self, Weather};
-use ingest::{Content, FileKind, FileRecord, FileStamp, Finding};
+use ingest::{Content, FileKind, FileRecord, FileStamp, Finding, check_lines};
 use shading::ShadowYear;
 use std::cell::OnceCell;
 use std::collections::BTreeMap;
@@ -118,9 +118,14 @@ pub(crate) fn refusal_key(record: &FileRecord) -> String {
     keys::refusal_key(&record.path, &reason)
 }
 
+/// Ten years of hours: which of them stand twice is said by line.
+const MOST_SHADOW_ROWS: usize = 87_840;
+
 fn read_shadow(study: &Study) -> Result<(ShadowYear, FileRecord), PipelineError> {
     let path = study.base.join(&study.shadow_path);
-    let content = Content::read(&path).map_err(|finding| PipelineError::ShadowFile { path, finding })?;
+    let content = Content::read(&path).map_err(|finding| PipelineError::ShadowFile { path: path.clone(), finding })?;
+    check_lines(&content.bytes, b',', MOST_SHADOW_ROWS)
+        .map_err(|finding| PipelineError::ShadowFile { path: path.clone(), finding })?;
     let shadow = ShadowYear::read(content.bytes.as_slice())
         .map_err(|source| PipelineError::Shadow { path: study.shadow_path.clone(), source })?;
     let record = FileRecord {

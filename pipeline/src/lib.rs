@@ -6,6 +6,7 @@
 
 mod backup;
 mod basis;
+mod budget;
 mod canyon;
 mod check;
 mod error;

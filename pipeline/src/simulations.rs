@@ -134,6 +134,9 @@ impl SimulationBasis<'_> {
         let ambient_k =
             job.samples.iter().map(|s| s.disturbances.ambient_temperature_k).sum::<f64>() / job.samples.len() as f64;
         let row = |point: &Point| {
+            if progress.stop() {
+                return None;
+            }
             let result = match (&in_time, &point.optima) {
                 (Err(reason), _) | (_, Err(reason)) => Err(reason.clone()),
                 (Ok(in_time), Ok(optima)) => {
@@ -144,16 +147,17 @@ impl SimulationBasis<'_> {
                     Ok(Replay::ALL.iter().filter_map(replay).collect())
                 }
             };
-            SimulationRow {
+            Some(SimulationRow {
                 id: point.id.clone(),
                 key: point.key.clone(),
                 mission: first.segment.mission.clone(),
                 month: first.month,
                 ambient_k,
                 result,
-            }
+            })
         };
-        job.points.iter().take_while(|_| !progress.stop()).map(row).collect()
+        // A night has one mission, whose points then share the cores.
+        job.points.par_iter().map(row).collect::<Vec<_>>().into_iter().flatten().collect()
     }
 }
 

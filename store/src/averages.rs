@@ -81,38 +81,41 @@ SELECT
 FROM annual AS a
 LEFT JOIN annual AS r ON r.design = 'ptc' AND r.pmv_min = a.pmv_min AND r.pmv_max = a.pmv_max";
 
-const SIMULATION_ANNUAL: &str = "INSERT INTO simulation_annual
-WITH monthly AS (
-    SELECT
-        design,
-        pmv_limit,
-        pmv_min,
-        pmv_max,
-        controller,
-        month,
-        sum(mean_hvac_power_w * seconds ORDER BY mission) / sum(seconds) AS power_w,
-        sum(static_mean_hvac_power_w * seconds ORDER BY mission) / sum(seconds) AS static_power_w,
-        sum(saturated_fraction * seconds ORDER BY mission) / sum(seconds) AS saturated_fraction,
-        count(*) AS mission_count
-    FROM simulation
-    GROUP BY design, pmv_min, pmv_max, controller, month
-)
+/// The months whose simulations have changed.
+const SIMULATION_MONTH: &str = "INSERT INTO simulation_month
 SELECT
-    m.design,
-    m.pmv_limit,
-    m.pmv_min,
-    m.pmv_max,
+    design_id,
+    window_id,
+    controller,
+    month,
+    sum(mean_hvac_power_w * seconds ORDER BY mission) / sum(seconds),
+    sum(static_mean_hvac_power_w * seconds ORDER BY mission) / sum(seconds),
+    sum(saturated_fraction * seconds ORDER BY mission) / sum(seconds),
+    count(*)
+FROM simulated_mission
+WHERE month IN (SELECT month FROM stale_simulation_month)
+GROUP BY design_id, window_id, controller, month";
+
+/// Months by their days, within a month every second alike.
+const SIMULATION_ANNUAL: &str = "INSERT INTO simulation_annual
+SELECT
+    d.name,
+    w.pmv_limit,
+    w.pmv_min,
+    w.pmv_max,
     m.controller,
-    sum(m.power_w * w.days ORDER BY month) / sum(w.days),
-    sum(m.static_power_w * w.days ORDER BY month) / sum(w.days),
-    sum(m.saturated_fraction * w.days ORDER BY month) / sum(w.days),
+    sum(m.power_w * n.days ORDER BY month) / sum(n.days),
+    sum(m.static_power_w * n.days ORDER BY month) / sum(n.days),
+    sum(m.saturated_fraction * n.days ORDER BY month) / sum(n.days),
     sum(m.mission_count),
     coalesce((SELECT max(run_id) FROM run), 0)
-FROM monthly AS m
-JOIN month_weight AS w USING (month)
-GROUP BY m.design, m.pmv_min, m.pmv_max, m.controller";
+FROM simulation_month AS m
+JOIN month_weight AS n USING (month)
+JOIN hvac_design AS d USING (design_id)
+JOIN comfort_window AS w USING (window_id)
+GROUP BY m.design_id, m.window_id, m.controller";
 
-const SIMULATION_CLASS: &str = "INSERT INTO simulation_class
+const SIMULATION_CLASS_MONTH: &str = "INSERT INTO simulation_class_month
 WITH classed AS (
     SELECT
         r.design_id,
@@ -129,6 +132,7 @@ WITH classed AS (
     FROM simulated_mission AS r
     JOIN simulated_mission AS v USING (source_file_id, design_id, window_id)
     WHERE r.controller = 'paper' AND v.controller = 'warm-start'
+        AND r.month IN (SELECT month FROM stale_simulation_month)
 ),
 all_classed AS (
     SELECT *, 0 AS sorting, 'month' AS sorted_by, month AS place, printf('%02d', month) AS class FROM classed
@@ -144,24 +148,43 @@ all_classed AS (
     FROM classed
 )
 SELECT
-    d.name AS design,
+    design_id,
+    window_id,
+    sorting * 100 + place,
+    month,
+    sorted_by,
+    class,
+    count(*),
+    sum(seconds),
+    sum(mean_hvac_power_w * seconds ORDER BY mission),
+    sum(static_mean_hvac_power_w * seconds ORDER BY mission),
+    sum(warm_w * seconds ORDER BY mission),
+    sum(saturated_fraction * seconds ORDER BY mission),
+    sum(max_abs_pmv_15min ORDER BY mission),
+    count(max_abs_pmv_15min)
+FROM all_classed
+GROUP BY design_id, window_id, sorting, place, month";
+
+const SIMULATION_CLASS: &str = "INSERT INTO simulation_class
+SELECT
+    d.name,
     w.pmv_limit,
     w.pmv_min,
     w.pmv_max,
-    a.sorted_by,
-    a.class,
-    a.sorting * 100 + a.place AS class_order,
-    count(*) AS mission_count,
-    sum(a.mean_hvac_power_w * a.seconds ORDER BY a.mission) / sum(a.seconds) AS mean_hvac_power_w,
-    sum(a.static_mean_hvac_power_w * a.seconds ORDER BY a.mission) / sum(a.seconds) AS static_mean_hvac_power_w,
-    sum(a.warm_w * a.seconds ORDER BY a.mission) / sum(a.seconds) AS warm_start_power_w,
-    avg(a.max_abs_pmv_15min ORDER BY a.mission) AS mean_max_abs_pmv_15min,
-    sum(a.saturated_fraction * a.seconds ORDER BY a.mission) / sum(a.seconds),
+    m.sorted_by,
+    m.class,
+    m.class_order,
+    sum(m.mission_count),
+    sum(m.power_ws ORDER BY month) / sum(m.seconds),
+    sum(m.static_ws ORDER BY month) / sum(m.seconds),
+    sum(m.warm_ws ORDER BY month) / sum(m.seconds),
+    sum(m.vote_sum ORDER BY month) / nullif(sum(m.vote_count), 0),
+    sum(m.saturated_s ORDER BY month) / sum(m.seconds),
     coalesce((SELECT max(run_id) FROM run), 0)
-FROM all_classed AS a
+FROM simulation_class_month AS m
 JOIN hvac_design AS d USING (design_id)
 JOIN comfort_window AS w USING (window_id)
-GROUP BY d.position, w.position, a.sorting, a.place";
+GROUP BY m.design_id, m.window_id, m.class_order";
 
 impl Store {
     /// Completes the optima: renews the averages of the months that have changed, and records the stage.
@@ -184,8 +207,17 @@ impl Store {
     /// # Errors
     /// [`StoreError::Statement`].
     pub fn complete_simulations(&mut self, record: &StageRecord) -> Result<(), StoreError> {
-        let renew =
-            ["DELETE FROM simulation_annual", SIMULATION_ANNUAL, "DELETE FROM simulation_class", SIMULATION_CLASS];
+        let renew = [
+            "DELETE FROM simulation_month WHERE month IN (SELECT month FROM stale_simulation_month)",
+            SIMULATION_MONTH,
+            "DELETE FROM simulation_annual",
+            SIMULATION_ANNUAL,
+            "DELETE FROM simulation_class_month WHERE month IN (SELECT month FROM stale_simulation_month)",
+            SIMULATION_CLASS_MONTH,
+            "DELETE FROM simulation_class",
+            SIMULATION_CLASS,
+            "DELETE FROM stale_simulation_month",
+        ];
         self.complete(RecordedStage::Simulate, record, &renew)
     }
 

@@ -33,7 +33,9 @@ const SEALED: [Table; 13] = [
 const SIMULATED: Table = ("simulated_mission", &["source_file_id", "design_id", "window_id", "controller"]);
 const OPTIMA: Table = ("optimum_point", &["sample_id", "design_id", "window_id"]);
 /// Tables of averages, with their keys.
-const AVERAGES: [(&str, &str); 4] = [
+const AVERAGES: [(&str, &str); 6] = [
+    ("simulation_month", "design_id, window_id, controller, month"),
+    ("simulation_class_month", "design_id, window_id, class_order, month"),
     ("monthly_average", "design, pmv_min, pmv_max, month"),
     ("annual_average", "design, pmv_min, pmv_max"),
     ("simulation_annual", "design, pmv_min, pmv_max, controller"),
@@ -228,12 +230,14 @@ impl Store {
         self.refuse_damaged(OPTIMA, of_stale_months)
     }
 
-    /// Refuses simulated missions that are not as they were written.
+    /// Refuses simulated missions of the months that are to be averaged anew where one is not as they were written.
     ///
     /// # Errors
     /// [`StoreError::Damaged`], [`StoreError::Statement`].
     pub fn check_simulations(&mut self) -> Result<(), StoreError> {
-        self.refuse_damaged(SIMULATED, "SELECT * FROM simulated_mission")
+        let of_stale_months = "SELECT * FROM simulated_mission
+            WHERE month IN (SELECT month FROM stale_simulation_month)";
+        self.refuse_damaged(SIMULATED, of_stale_months)
     }
 
     fn refuse_damaged(&mut self, table: Table, sql: &str) -> Result<(), StoreError> {

@@ -57,7 +57,9 @@ pub enum StoreError {
     #[error("the database {0} was written by a newer version of busclimate; update the program")]
     Newer(PathBuf),
     /// The schema cannot be brought up to date.
-    #[error("the schema of the database {path} cannot be brought up to date: {source}")]
+    #[error(
+        "the schema of the database {path} cannot be brought up to date: {source}; check its permissions and the free space"
+    )]
     Schema {
         /// The file.
         path: PathBuf,
@@ -76,7 +78,7 @@ pub enum StoreError {
         what: String,
     },
     /// A statement failed.
-    #[error("the database {path} refused a statement: {error}")]
+    #[error("the database {path} refused a statement: {error}; check its permissions and the free space")]
     Refused {
         /// The file.
         path: PathBuf,

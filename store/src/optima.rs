@@ -113,9 +113,13 @@ impl Store {
     /// [`StoreError::Statement`].
     pub fn missing_optima(&mut self, grid: &StoredGrid) -> Result<Vec<MissingOptima>, StoreError> {
         self.drive(async |c| {
-            let sql = "SELECT s.sample_id, coalesce(group_concat(p.design_id || ' ' || p.window_id), '') AS present
-                FROM hourly_sample AS s LEFT JOIN optimum_point AS p USING (sample_id)
-                GROUP BY s.sample_id HAVING count(p.sample_id) < ? ORDER BY s.sample_id";
+            // Counting is all that complete samples cost.
+            let sql = "WITH incomplete AS MATERIALIZED (
+                    SELECT sample_id FROM hourly_sample
+                    WHERE (SELECT count(*) FROM optimum_point AS p WHERE p.sample_id = hourly_sample.sample_id) < ?)
+                SELECT s.sample_id, coalesce(group_concat(p.design_id || ' ' || p.window_id), '') AS present
+                FROM incomplete AS s LEFT JOIN optimum_point AS p USING (sample_id)
+                GROUP BY s.sample_id ORDER BY s.sample_id";
             let points = grid.designs.len() * grid.windows.len();
             let mut by_present: BTreeMap<String, Vec<i64>> = BTreeMap::new();
             for r in sqlx::query(sql).bind(points as i64).fetch_all(c).await? {
@@ -168,12 +172,13 @@ impl Store {
     /// [`StoreError::Statement`].
     pub fn status_counts(&mut self) -> Result<StatusCounts, StoreError> {
         self.drive(async |c| {
-            let mut counts = StatusCounts::default();
-            let sql = "SELECT status, count(*) AS points FROM optimum_point GROUP BY status";
+            let all = sqlx::query("SELECT count(*) AS points FROM optimum_point").fetch_one(&mut *c).await?;
+            let mut counts = StatusCounts { solved: count(&all, "points")?, ..StatusCounts::default() };
+            let sql = "SELECT status, count(*) AS points FROM optimum_point WHERE status <> 0 GROUP BY status";
             for row in sqlx::query(sql).fetch_all(c).await? {
                 let points = count(&row, "points")?;
+                counts.solved -= points;
                 match row.try_get("status")? {
-                    SOLVED => counts.solved += points,
                     NOT_CONVERGED => counts.not_converged += points,
                     _ => counts.infeasible += points,
                 }

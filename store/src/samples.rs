@@ -80,12 +80,7 @@ impl Store {
             for id in stored.keys() {
                 sqlx::query("DELETE FROM hourly_sample WHERE sample_id = ?").bind(id).execute(&mut *tx).await?;
             }
-            sqlx::query("DELETE FROM excluded_segment").execute(&mut *tx).await?;
-            for e in excluded {
-                let row =
-                    Insert::into("excluded_segment").set("mission", e.mission.as_str())?.set("segment", e.segment)?;
-                row.set("start_utc", time_text(e.start))?.set("reason", e.reason.as_str())?.execute(&mut tx).await?;
-            }
+            put_excluded(&mut tx, excluded).await?;
             commit(tx).await?;
             Ok((changed, stored.len() as u64))
         })
@@ -98,6 +93,28 @@ impl Store {
     pub fn samples(&mut self) -> Result<Vec<Sample>, StoreError> {
         self.drive_checked(async |c, damage| Ok(stored_samples(c, damage).await?.into_values().collect()))
     }
+}
+
+/// Makes the excluded segments exactly these; those that are there already stay.
+async fn put_excluded(c: &mut SqliteConnection, excluded: &[ExcludedSegment]) -> Result<(), StoreError> {
+    let mut stored: BTreeMap<(String, u32), (String, String)> = BTreeMap::new();
+    for r in sqlx::query("SELECT * FROM excluded_segment").fetch_all(&mut *c).await? {
+        let key = (r.try_get("mission")?, r.try_get("segment")?);
+        stored.insert(key, (r.try_get("start_utc")?, r.try_get("reason")?));
+    }
+    for e in excluded {
+        let (key, value) = ((e.mission.clone(), e.segment), (time_text(e.start), e.reason.clone()));
+        if stored.remove(&key).is_some_and(|before| before == value) {
+            continue;
+        }
+        let row = Insert::replacing("excluded_segment").set("mission", key.0)?.set("segment", key.1)?;
+        row.set("start_utc", value.0)?.set("reason", value.1)?.execute(c).await?;
+    }
+    for (mission, segment) in stored.keys() {
+        let sql = "DELETE FROM excluded_segment WHERE mission = ? AND segment = ?";
+        sqlx::query(sql).bind(mission).bind(segment).execute(&mut *c).await?;
+    }
+    Ok(())
 }
 
 async fn insert_sample(c: &mut SqliteConnection, file: i64, s: &Sample) -> Result<(), StoreError> {

@@ -102,8 +102,10 @@ impl Store {
     /// [`StoreError::Statement`].
     pub fn simulation_keys(&mut self, grid: &StoredGrid) -> Result<BTreeMap<SimulationId, String>, StoreError> {
         self.drive(async |c| {
-            let sql = "SELECT DISTINCT path, design_id, window_id, simulation_key
+            // The rows of all ways to run the bus are written together.
+            let sql = "SELECT path, design_id, window_id, simulation_key
                 FROM (SELECT source_file_id, design_id, window_id, simulation_key FROM simulated_mission
+                        WHERE controller = 'paper'
                     UNION ALL SELECT source_file_id, design_id, window_id, simulation_key FROM unsimulated_mission)
                 JOIN source_file USING (source_file_id)";
             let rows = sqlx::query(sql).fetch_all(c).await?;

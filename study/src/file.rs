@@ -328,12 +328,19 @@ pub enum StudyFileError {
     },
 }
 
+/// Largest study file in bytes.
+const LARGEST: u64 = 4 << 20;
+
 impl StudyFile {
     /// Reads and parses a study file.
     pub fn read(path: &Path) -> Result<Self, StudyFileError> {
         let shown = path.display().to_string();
         if std::fs::metadata(path).is_ok_and(|m| !m.is_file()) {
             let message = "not a regular file; give a file".to_owned();
+            return Err(StudyFileError::Content { path: shown, message });
+        }
+        if std::fs::metadata(path).is_ok_and(|m| m.len() > LARGEST) {
+            let message = format!("more than {} MiB; no study file is that large", LARGEST >> 20);
             return Err(StudyFileError::Content { path: shown, message });
         }
         let text =

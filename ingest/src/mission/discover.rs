@@ -29,7 +29,7 @@ pub struct MissionSource {
 #[derive(Debug, Clone, PartialEq, Eq)]
 enum Place {
     File(PathBuf),
-    Entry { archive: PathBuf, index: usize },
+    Entry { archive: PathBuf, index: usize, bytes: u64 },
 }
 
 /// What was found where the study says that missions are.
@@ -101,11 +101,11 @@ impl Discovery {
             }
         };
         for index in 0..archive.len() {
-            let (entry_label, inside) = match archive.by_index_raw(index) {
+            let (entry_label, inside, bytes) = match archive.by_index_raw(index) {
                 Ok(entry) if entry.is_dir() => continue,
                 Ok(entry) => {
                     let name = String::from_utf8_lossy(entry.name_raw()).into_owned();
-                    (format!("{label}!{name}"), entry.enclosed_name())
+                    (format!("{label}!{name}"), entry.enclosed_name(), entry.size())
                 }
                 Err(error) => {
                     let message = format!("the entry cannot be read: {error}; fetch the archive again");
@@ -115,7 +115,7 @@ impl Discovery {
             };
             match inside {
                 Some(file) if extension(&file) == "csv" => {
-                    self.take(&entry_label, &file, Place::Entry { archive: path.to_owned(), index });
+                    self.take(&entry_label, &file, Place::Entry { archive: path.to_owned(), index, bytes });
                 }
                 Some(_) => {}
                 None => {
@@ -177,9 +177,18 @@ impl MissionSource {
     pub fn load(&self, reader: &mut FileReader) -> Result<Content, Box<FileRecord>> {
         let content = match &self.place {
             Place::File(path) => reader.read(path),
-            Place::Entry { archive, index } => reader.read_entry(archive, *index),
+            Place::Entry { archive, index, .. } => reader.read_entry(archive, *index),
         };
         content.map_err(|finding| Box::new(FileRecord::refused(&self.path, FileKind::Mission, "", 0, finding)))
+    }
+
+    /// Size of the content in bytes, as the system or the archive says; 0 where it does not.
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        match &self.place {
+            Place::File(path) => std::fs::metadata(path).map_or(0, |m| m.len()),
+            Place::Entry { bytes, .. } => *bytes,
+        }
     }
 
     /// The stamp of the file, or of the archive that it lies in.

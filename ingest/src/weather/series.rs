@@ -8,6 +8,8 @@ use crate::ExclusionReason;
 
 /// Longest span of a series: beyond it a stamp is wrong.
 const MAX_YEARS: i64 = 60;
+/// Most intervals of a series: twelve years of minutes, 300 MB.
+const MOST_INTERVALS: i64 = 12 * 366 * 1440;
 const YEAR_HOURS: usize = 8760;
 
 /// Intervals of equal length, from the first to the last one in the files.
@@ -59,7 +61,14 @@ impl Calendar {
         if last - first > MAX_YEARS * 366 * 86_400 {
             return Err(format!("the stamps span more than {MAX_YEARS} years; one of them is wrong"));
         }
-        Ok((Self::Series { start_s: first }, ((last - first) / interval_s + 1) as usize))
+        let length = (last - first) / interval_s + 1;
+        if length > MOST_INTERVALS {
+            return Err(format!(
+                "the stamps span {length} intervals of {interval_s} s, more than {MOST_INTERVALS}; one of them is wrong, or give \
+                 fewer years"
+            ));
+        }
+        Ok((Self::Series { start_s: first }, length as usize))
     }
 
     /// The interval that starts at, or holds, a second since 1970.

@@ -5,9 +5,11 @@ use std::path::Path;
 
 use super::format::{Column, Encoding, Format, Interval, Layout, RowOrder};
 use super::values::{MISSING, PerQuantity, Quantity, Values};
-use crate::files::{Content, check_text, find_columns};
+use crate::files::{Content, check_lines, check_text, find_columns};
 use crate::{FileKind, FileRecord, Finding, FindingKind};
 
+/// Sixty years of intervals of ten minutes.
+const MOST_ROWS: usize = 60 * 366 * 144;
 /// Air temperatures on Earth, in °C.
 const TEMPERATURE_RANGE: (f64, f64) = (-60.0, 60.0);
 /// Above this a value in a temperature column is one in K.
@@ -72,6 +74,7 @@ fn parse(bytes: &[u8], format: &dyn Format) -> Result<Parsed, Finding> {
     let header = bytes.split(|&b| b == b'\n').next().unwrap_or_default();
     let layout = format.layout(header);
     check_text(bytes, layout.encoding == Encoding::Utf8)?;
+    check_lines(bytes, layout.separator as u8, MOST_ROWS)?;
     let utf8 = layout.encoding == Encoding::Utf8 || bytes.starts_with(b"\xef\xbb\xbf");
     let (text, ..) = if utf8 { encoding_rs::UTF_8.decode(bytes) } else { encoding_rs::WINDOWS_1252.decode(bytes) };
     let mut reader = csv::ReaderBuilder::new()
