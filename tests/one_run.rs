@@ -116,6 +116,22 @@ fn cli_a_foreign_and_a_newer_database_are_told_apart() {
 }
 
 #[test]
+fn cli_an_empty_copy_is_told_apart_from_a_study() {
+    let scratch = Scratch::demo(1);
+    scratch.write("study.db", "");
+    for command in ["status", "report"] {
+        let run = scratch.expect(3, &[command]);
+        assert!(
+            run.stderr.contains("study.db holds nothing") && run.stderr.contains("busclimate backup"),
+            "{}",
+            run.stderr
+        );
+    }
+    assert_eq!(scratch.read("study.db"), "");
+    scratch.expect(0, &["run"]);
+}
+
+#[test]
 fn cli_a_backup_is_whole_while_a_run_is_at_work() {
     let scratch = Scratch::demo(24);
     let mut run = start(&scratch);

@@ -45,7 +45,10 @@ pub(crate) fn solve(study: &Study, store: &mut Store, progress: &dyn Progress) -
     progress.end();
     let counts = store.status_counts()?;
     let result = serde_json::json!([counts.solved, counts.infeasible, counts.not_converged]).to_string();
-    store.check_stale_months()?;
+    store.check_stale_months(&|| progress.stop())?;
+    if progress.stop() {
+        return Err(PipelineError::Interrupted);
+    }
     store.complete_optima(&StageRecord { key, result })?;
     if total.programs > 0 {
         progress.info(&format!(

@@ -88,7 +88,10 @@ pub(crate) fn simulate(
         return Err(PipelineError::Interrupted);
     }
     traces::trace(&basis, store, &wanted)?;
-    store.check_simulations()?;
+    store.check_simulations(&|| progress.stop())?;
+    if progress.stop() {
+        return Err(PipelineError::Interrupted);
+    }
     store.complete_simulations(&StageRecord { key, result: basis.missions.len().to_string() })?;
     Ok(work(study, simulated, basis.missions.len(), stale.len()))
 }

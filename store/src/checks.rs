@@ -220,29 +220,31 @@ impl Store {
         damaged.into_iter().next().map_or(Ok(()), |what| Err(self.damaged(what)))
     }
 
-    /// Refuses optima of the months that are to be averaged anew where one is not as it was written.
+    /// Refuses optima of the months that are to be averaged anew where one is not as it was written; ends early where `stop`
+    /// says so.
     ///
     /// # Errors
     /// [`StoreError::Damaged`], [`StoreError::Statement`].
-    pub fn check_stale_months(&mut self) -> Result<(), StoreError> {
+    pub fn check_stale_months(&mut self, stop: &dyn Fn() -> bool) -> Result<(), StoreError> {
         let of_stale_months = "SELECT p.* FROM hourly_sample AS s JOIN optimum_point AS p USING (sample_id)
             WHERE s.month IN (SELECT month FROM stale_month)";
-        self.refuse_damaged(OPTIMA, of_stale_months)
+        self.refuse_damaged(OPTIMA, of_stale_months, stop)
     }
 
-    /// Refuses simulated missions of the months that are to be averaged anew where one is not as they were written.
+    /// Refuses simulated missions of the months that are to be averaged anew where one is not as it was written; ends early
+    /// where `stop` says so.
     ///
     /// # Errors
     /// [`StoreError::Damaged`], [`StoreError::Statement`].
-    pub fn check_simulations(&mut self) -> Result<(), StoreError> {
+    pub fn check_simulations(&mut self, stop: &dyn Fn() -> bool) -> Result<(), StoreError> {
         let of_stale_months = "SELECT * FROM simulated_mission
             WHERE month IN (SELECT month FROM stale_simulation_month)";
-        self.refuse_damaged(SIMULATED, of_stale_months)
+        self.refuse_damaged(SIMULATED, of_stale_months, stop)
     }
 
-    fn refuse_damaged(&mut self, table: Table, sql: &str) -> Result<(), StoreError> {
+    fn refuse_damaged(&mut self, table: Table, sql: &str, stop: &dyn Fn() -> bool) -> Result<(), StoreError> {
         let mut checked = Checked::default();
-        self.drive(async |c| check_rows(c, table, sql, &mut checked, &|| false).await)?;
+        self.drive(async |c| check_rows(c, table, sql, &mut checked, stop).await)?;
         checked.damaged.into_iter().next().map_or(Ok(()), |what| Err(self.damaged(what)))
     }
 

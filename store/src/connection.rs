@@ -40,6 +40,12 @@ pub enum StoreError {
     /// There is no such file.
     #[error("there is no database {0}; run the study first")]
     Missing(PathBuf),
+    /// A file without a single table.
+    #[error(
+        "the database {0} holds nothing: no run has begun on it, or it is a copy by `cp` of one that a run was writing; copy with \
+         `busclimate backup`"
+    )]
+    Empty(PathBuf),
     /// The database is that of another study.
     #[error("the database {path} holds the study {holds:?}, not {asked:?}; give this study a `database` of its own")]
     OtherStudy {
@@ -189,6 +195,7 @@ impl Store {
         if !path.exists() {
             return Err(StoreError::Missing(path.to_owned()));
         }
+        Self::roll_back(path);
         let options = reading(path);
         let mut store = Self::connect(path, &options, true)?;
         if store.is_current()? {
@@ -199,6 +206,28 @@ impl Store {
         Self::connect(path, &options, true)
     }
 
+    /// Undoes the transaction that a killed run has left half written in the file, which SQLite does at the first read of somebody
+    /// who may write. Where it cannot be done, the reader's own error says so.
+    fn roll_back(path: &Path) {
+        let mut journal = path.as_os_str().to_owned();
+        journal.push("-journal");
+        if !Path::new(&journal).exists() {
+            return;
+        }
+        let lock = lock_path(path);
+        let Ok(file) = File::options().write(true).create(true).truncate(false).open(&lock) else { return };
+        if file.try_lock().is_err() {
+            // A run is at work: the journal is its own.
+            return;
+        }
+        let options = SqliteConnectOptions::new().filename(path).busy_timeout(BUSY_TIMEOUT);
+        let _ = Self::connect(path, &options, true).and_then(|mut store| {
+            store.is_empty()?;
+            store.close()
+        });
+        let _ = std::fs::remove_file(&lock);
+    }
+
     /// Renews the schema for a reader, or waits for the run that is about to: only one of them may.
     fn bring_up_to_date(path: &Path, options: &SqliteConnectOptions) -> Result<(), StoreError> {
         let (lock, since) = (lock_path(path), Instant::now());
@@ -206,7 +235,14 @@ impl Store {
         while since.elapsed() < BUSY_TIMEOUT {
             let file = File::options().write(true).create(true).truncate(false).open(&lock).map_err(cannot)?;
             if file.try_lock().is_ok() {
-                let renewed = Self::open(path).and_then(Self::close);
+                // No run is about to fill it.
+                let mut store = Self::connect(path, options, true)?;
+                let empty = store.is_empty()?;
+                store.close()?;
+                let renewed = match empty {
+                    true => Err(StoreError::Empty(path.to_owned())),
+                    false => Self::open(path).and_then(Self::close),
+                };
                 let _ = std::fs::remove_file(&lock);
                 return renewed;
             }
@@ -219,6 +255,13 @@ impl Store {
             }
         }
         Err(cannot(std::io::Error::new(std::io::ErrorKind::WouldBlock, "a run is bringing it up to date")))
+    }
+
+    fn is_empty(&mut self) -> Result<bool, StoreError> {
+        self.drive(async |c| {
+            let row = sqlx::query("SELECT count(*) AS tables FROM sqlite_schema").fetch_one(c).await?;
+            Ok(row.try_get::<i64, _>("tables")? == 0)
+        })
     }
 
     /// Whether the schema is that of this program; not yet that of a new or earlier database. That of a newer version, or of
