@@ -1,5 +1,6 @@
 //! Finding files, reading their bytes, and writing them whole.
 
+use flate2::read::MultiGzDecoder;
 use std::fs::{File, Metadata};
 use std::io::{BufReader, Read};
 use std::path::{Path, PathBuf};
@@ -114,6 +115,21 @@ impl FileReader {
         Ok(Content { stamp: FileStamp::settled(&metadata), ..content })
     }
 
+    /// Reads a file that is compressed by gzip.
+    ///
+    /// # Errors
+    /// A finding that says why it cannot be read.
+    pub(crate) fn read_gzip(&mut self, path: &Path) -> Result<Content, Finding> {
+        let file = File::open(path).map_err(|e| unreadable(&e))?;
+        let metadata = file.metadata().map_err(|e| unreadable(&e))?;
+        if !metadata.is_file() {
+            return Err(Finding::whole(FindingKind::Unreadable, "not a regular file; give a file"));
+        }
+        let unpacked = MultiGzDecoder::new(BufReader::new(file));
+        let content = limited(unpacked, 0, std::mem::take(&mut self.buffer))?;
+        Ok(Content { stamp: FileStamp::settled(&metadata), ..content })
+    }
+
     /// Reads an entry of an archive; the archive is opened once for all entries that follow each other.
     ///
     /// # Errors
@@ -175,7 +191,7 @@ pub(crate) fn open_archive(path: &Path) -> Result<Archive, zip::result::ZipError
     ZipArchive::new(BufReader::new(File::open(path)?))
 }
 
-/// The files that a path of the study names: all files of a folder, the matches of a glob, or one file; sorted.
+/// What a path of the study names: all that lies in a folder, the matches of a glob, or one file; sorted.
 pub(crate) fn list(base: &Path, pattern: &str) -> Result<Vec<PathBuf>, IngestError> {
     let path = base.join(pattern);
     let error = |reason: String| IngestError::Path { path: path.clone(), reason };
@@ -195,7 +211,6 @@ pub(crate) fn list(base: &Path, pattern: &str) -> Result<Vec<PathBuf>, IngestErr
     } else {
         return Err(error("there is no such file or folder".to_owned()));
     }
-    files.retain(|f| f.is_file());
     files.sort();
     Ok(files)
 }

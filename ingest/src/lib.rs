@@ -12,6 +12,7 @@
 mod files;
 pub mod irradiance;
 pub mod mission;
+mod parse;
 mod quality;
 pub mod sample;
 mod segments;

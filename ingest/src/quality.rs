@@ -4,6 +4,7 @@ use chrono::{DateTime, Utc};
 use std::fmt;
 
 use crate::FileStamp;
+use crate::telemetry::AMBIENT;
 
 /// What a file holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -213,6 +214,19 @@ pub struct FileRecord {
 }
 
 impl FileRecord {
+    /// The first finding of a value that cannot be used and for which the last one stands; of a mission that is used. A value of
+    /// the weather that cannot be used is missing, and its interval interpolated or left out.
+    #[must_use]
+    pub fn replaced(&self) -> Option<&Finding> {
+        let replaced = |f: &&Finding| {
+            // The ambient temperature of the bus is checked, not used.
+            matches!(f.kind, FindingKind::RefusedValue | FindingKind::OutOfRange)
+                && f.column.as_deref() != Some(AMBIENT)
+        };
+        let is_used_mission = self.accepted && self.kind == FileKind::Mission;
+        self.findings.iter().filter(|_| is_used_mission).find(replaced)
+    }
+
     /// The same record with the stamp of its file.
     #[must_use]
     pub fn stamped(mut self, stamp: Option<FileStamp>) -> Self {

@@ -1,13 +1,14 @@
 //! The columns of a mission file that the samples need, read with polars.
 
 use polars::prelude::{
-    ChunkedArray, CsvEncoding, CsvParseOptions, CsvReadOptions, DataFrame, DataType, Field, PlSmallStr,
-    PolarsNumericType, Schema, SerReader,
+    ChunkedArray, CsvEncoding, CsvParseOptions, CsvReadOptions, DataFrame, DataType, Field, Float64Chunked,
+    Int64Chunked, IntoColumn, NewChunkedArray, PlSmallStr, PolarsNumericType, PolarsResult, Schema, SerReader,
 };
 use std::io::Cursor;
 use std::sync::Arc;
 
 use crate::files::{check_lines, check_text, find_columns};
+use crate::parse;
 use crate::{Finding, FindingKind};
 
 pub(crate) const TIME: &str = "time_unix";
@@ -55,7 +56,8 @@ impl Telemetry {
         let header = reader.headers().map_err(|e| not_csv(&e))?;
         find_columns(header, &COLUMNS, ',')?;
 
-        let frame = scan(bytes).map_err(|e| not_csv(&e))?;
+        let mut frame = scan(bytes).map_err(|e| not_csv(&e))?;
+        read_as_text(&mut frame, bytes).map_err(|e| not_csv(&e))?;
         if frame.height() == 0 {
             return Err(Finding::whole(FindingKind::Empty, "there are no rows below the header").at_line(2));
         }
@@ -97,15 +99,42 @@ fn values<T: PolarsNumericType>(column: &ChunkedArray<T>) -> impl Iterator<Item 
     column.downcast_iter().flat_map(|chunk| chunk.iter().map(|v| v.copied()))
 }
 
-fn scan(bytes: &[u8]) -> polars::prelude::PolarsResult<DataFrame> {
+fn scan(bytes: &[u8]) -> PolarsResult<DataFrame> {
     let types = [
         (TIME, DataType::Int64),
         (PASSENGERS, DataType::Float64),
         (DOOR, DataType::Float64),
         (AMBIENT, DataType::Float64),
     ];
+    scan_columns(bytes, &types)
+}
+
+/// Reads columns with values that are no plain numbers once more, as text: empty fields are missing, and numbers and flags may
+/// be written as other tools write them.
+fn read_as_text(frame: &mut DataFrame, bytes: &[u8]) -> PolarsResult<()> {
+    let odd = |name: &&str| frame.column(name).is_ok_and(|column| column.null_count() > 0);
+    let odd: Vec<&'static str> = COLUMNS.into_iter().filter(odd).collect();
+    if odd.is_empty() {
+        return Ok(());
+    }
+    let types: Vec<(&'static str, DataType)> = odd.iter().map(|name| (*name, DataType::String)).collect();
+    let text = scan_columns(bytes, &types)?;
+    for name in odd {
+        let texts = text.column(name)?.as_materialized_series().str()?.iter().map(|t| t.map_or("", str::trim));
+        let column = match name {
+            TIME => Int64Chunked::from_iter_options(name.into(), texts.map(parse::second)).into_column(),
+            DOOR => Float64Chunked::from_iter_options(name.into(), texts.map(parse::flag)).into_column(),
+            _ => Float64Chunked::from_iter_options(name.into(), texts.map(parse::number)).into_column(),
+        };
+        frame.with_column(column)?;
+    }
+    Ok(())
+}
+
+fn scan_columns(bytes: &[u8], types: &[(&'static str, DataType)]) -> PolarsResult<DataFrame> {
+    let types = types.iter().cloned();
+    let columns: Arc<[PlSmallStr]> = types.clone().map(|(name, _)| PlSmallStr::from_static(name)).collect();
     let schema = Schema::from_iter(types.map(|(name, dtype)| Field::new(name.into(), dtype)));
-    let columns: Arc<[PlSmallStr]> = COLUMNS.map(PlSmallStr::from_static).into();
     // Missions are read side by side, so one of them takes one thread.
     CsvReadOptions::default()
         .with_columns(Some(columns))

@@ -107,6 +107,10 @@ pub fn run(study: &Study, stages: &[Stage], options: &Options, progress: &dyn Pr
     }
     store.close()?;
     summary.refused.iter().for_each(|file| progress.warn(&format!("refused: {file}")));
+    if let Some(first) = &summary.first_replaced {
+        let count = summary.replaced;
+        progress.warn(&format!("{count} missions have values that cannot be used, the first: {first}"));
+    }
     if let Some(failed) = &summary.first_unsimulated {
         progress.warn(&format!("{} missions are not simulated, the first: {failed}", summary.unsimulated));
     }

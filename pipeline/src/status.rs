@@ -1,7 +1,7 @@
 //! What the database holds of a study.
 
 use chrono::{DateTime, SecondsFormat, Utc};
-use ingest::{FileKind, FileRecord};
+use ingest::{FileKind, FileRecord, Finding};
 use serde::Serialize;
 use store::{Counts, RecordedStage, RunRow, RunStage, StatusCounts, Store};
 use study::Study;
@@ -15,6 +15,10 @@ pub struct Summary {
     pub counts: Counts,
     /// Refused files with the reason.
     pub refused: Vec<String>,
+    /// Missions with values that could not be used, for which the last ones stand.
+    pub replaced: usize,
+    /// The first of them, with what is wrong.
+    pub first_replaced: Option<String>,
     /// Missions that are not simulated, with a design and window each.
     pub unsimulated: usize,
     /// The first of them, with the reason.
@@ -25,7 +29,9 @@ impl Summary {
     pub(crate) fn of(study: &Study, store: &mut Store) -> Result<Self, PipelineError> {
         let status = status_counts(store)?;
         let samples: u64 = store.months()?.iter().map(|m| m.sample_count).sum();
-        let refused = store.files()?.iter().filter(|f| !f.accepted).map(refusal).collect();
+        let files = store.files()?;
+        let refused = files.iter().filter(|f| !f.accepted).map(|f| said(f, f.findings.first())).collect();
+        let replaced: Vec<&FileRecord> = files.iter().filter(|f| f.replaced().is_some()).collect();
         let counts = Counts {
             points: samples * study.grid.points() as u64,
             solved: status.solved,
@@ -36,7 +42,16 @@ impl Summary {
             let (low, high) = (f.window.pmv_min(), f.window.pmv_max());
             format!("{} with {} at PMV {low} … {high}: {}", f.mission, f.design, f.reason)
         };
-        Ok(Self { counts, refused, unsimulated: failures.len(), first_unsimulated: failures.first().map(line) })
+        let first_replaced = replaced.first().map(|f| said(f, f.replaced()));
+        let replaced = replaced.len();
+        Ok(Self {
+            counts,
+            refused,
+            replaced,
+            first_replaced,
+            unsimulated: failures.len(),
+            first_unsimulated: failures.first().map(line),
+        })
     }
 
     /// Points of the study that are not computed.
@@ -45,10 +60,10 @@ impl Summary {
         self.counts.points.saturating_sub(self.counts.solved + self.counts.failed)
     }
 
-    /// Whether every point has an optimum, every input is used and every mission simulated.
+    /// Whether every point has an optimum, every input is used as it is and every mission simulated.
     #[must_use]
     pub fn is_complete(&self) -> bool {
-        self.counts.failed == 0 && self.refused.is_empty() && self.unsimulated == 0
+        self.counts.failed == 0 && self.refused.is_empty() && self.replaced == 0 && self.unsimulated == 0
     }
 }
 
@@ -62,9 +77,9 @@ pub(crate) fn status_counts(store: &mut Store) -> Result<StatusCounts, PipelineE
     Ok(store.status_counts()?)
 }
 
-/// A refused file: path, line, column and reason.
-fn refusal(file: &FileRecord) -> String {
-    let Some(finding) = file.findings.first() else { return file.path.clone() };
+/// What is wrong with a file: path, line, column and reason.
+fn said(file: &FileRecord, finding: Option<&Finding>) -> String {
+    let Some(finding) = finding else { return file.path.clone() };
     let line = finding.line.map(|line| format!(", line {line}")).unwrap_or_default();
     let column = finding.column.as_deref().map(|c| format!(", column {c}")).unwrap_or_default();
     format!("{}{line}{column}: {}", file.path, finding.message)

@@ -2,7 +2,8 @@
 
 use chrono::{DateTime, NaiveDateTime, TimeDelta, Utc};
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::ffi::OsStr;
+use std::path::{Component, Path, PathBuf};
 
 use crate::files::{extension, label, list, open_archive};
 use crate::{Content, FileKind, FileReader, FileRecord, FileStamp, Finding, FindingKind, IngestError};
@@ -29,6 +30,7 @@ pub struct MissionSource {
 #[derive(Debug, Clone, PartialEq, Eq)]
 enum Place {
     File(PathBuf),
+    Gzip(PathBuf),
     Entry { archive: PathBuf, index: usize, bytes: u64 },
 }
 
@@ -41,21 +43,19 @@ pub struct Discovery {
     pub refused: Vec<FileRecord>,
 }
 
-/// Finds missions in a folder, a glob, one file or a `.zip`, relative to `base`. No `buses` means all of them.
+/// Finds missions in a folder with all below it, a glob, one file or a `.zip`, relative to `base`; each may be compressed
+/// (`.csv.gz`). No `buses` means all of them.
 ///
 /// The path must be there and hold at least one mission of the wanted buses. Files with the extension `csv` that are
-/// no mission, other than `metaData.csv`, are refused with a finding.
+/// no mission, archives that are not read and links that lead nowhere are refused with a finding; metadata and what
+/// operating systems leave beside files are not looked at.
 ///
 /// # Errors
 /// [`IngestError`] where the path does not exist or holds no mission.
 pub fn discover(base: &Path, pattern: &str, buses: &[u32]) -> Result<Discovery, IngestError> {
     let mut found = Discovery::default();
     for path in list(base, pattern)? {
-        match extension(&path).as_str() {
-            "csv" => found.take(&label(base, &path), &path, Place::File(path.clone())),
-            "zip" => found.take_archive(base, &path),
-            _ => {}
-        }
+        found.take_path(base, &path, 0);
     }
     let mut others: Vec<u32> = found.missions.iter().map(|m| m.bus).collect();
     found.missions.retain(|m| buses.is_empty() || buses.contains(&m.bus));
@@ -77,10 +77,62 @@ pub fn discover(base: &Path, pattern: &str, buses: &[u32]) -> Result<Discovery, 
     Ok(found)
 }
 
+/// Folders in folders that are looked into at most.
+const DEEPEST: usize = 8;
+/// Archives that are not read.
+const PACKED: [&str; 8] = ["gz", "7z", "tar", "tgz", "bz2", "xz", "zst", "rar"];
+
+/// Whether an operating system has left a file beside those of people.
+fn is_left_over(path: &Path) -> bool {
+    let starts = |name: &OsStr| {
+        let name = name.to_string_lossy();
+        name.starts_with("._") || name == ".DS_Store" || name == "__MACOSX"
+    };
+    path.components().any(|part| matches!(part, Component::Normal(name) if starts(name)))
+}
+
 impl Discovery {
+    /// A file, or a folder with all in it.
+    fn take_path(&mut self, base: &Path, path: &Path, depth: usize) {
+        let label = label(base, path);
+        if is_left_over(Path::new(&label)) {
+            return;
+        }
+        if path.is_dir() {
+            let Ok(entries) = std::fs::read_dir(path) else {
+                let message = "the folder cannot be read; check its permissions";
+                return self.refuse(&label, Finding::whole(FindingKind::Unreadable, message));
+            };
+            let mut inside: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
+            inside.sort();
+            if depth < DEEPEST {
+                inside.iter().for_each(|path| self.take_path(base, path, depth + 1));
+            }
+            return;
+        }
+        if path.is_symlink() && !path.exists() {
+            let message = "the link leads nowhere; its target is gone: bring it back, or remove the link";
+            return self.refuse(&label, Finding::whole(FindingKind::Unreadable, message));
+        }
+        match extension(path).as_str() {
+            "csv" => self.take(&label, path, Place::File(path.to_owned())),
+            "gz" if extension(&path.with_extension("")) == "csv" => {
+                self.take(&label, &path.with_extension(""), Place::Gzip(path.to_owned()));
+            }
+            "zip" => self.take_archive(base, path),
+            other if PACKED.contains(&other) => self.refuse_packed(&label),
+            _ => {}
+        }
+    }
+
+    fn refuse_packed(&mut self, label: &str) {
+        let message = "such an archive is not read; unpack it";
+        self.refuse(label, Finding::whole(FindingKind::Unreadable, message));
+    }
+
     fn take(&mut self, label: &str, file: &Path, place: Place) {
         let stem = file.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
-        if stem.eq_ignore_ascii_case("metaData") {
+        if stem.to_lowercase().starts_with("metadata") {
             return;
         }
         match parse_name(&stem) {
@@ -114,8 +166,12 @@ impl Discovery {
                 }
             };
             match inside {
-                Some(file) if extension(&file) == "csv" => {
+                Some(file) if extension(&file) == "csv" && !is_left_over(&file) => {
                     self.take(&entry_label, &file, Place::Entry { archive: path.to_owned(), index, bytes });
+                }
+                Some(file) if is_left_over(&file) => {}
+                Some(file) if extension(&file) == "zip" || PACKED.contains(&extension(&file).as_str()) => {
+                    self.refuse_packed(&entry_label);
                 }
                 Some(_) => {}
                 None => {
@@ -150,6 +206,7 @@ impl Discovery {
 #[must_use]
 pub fn mission_name(path: &str) -> &str {
     let file = path.rsplit(['/', '!']).next().unwrap_or(path);
+    let file = file.strip_suffix(".gz").unwrap_or(file);
     file.rsplit_once('.').map_or(file, |(stem, _)| stem)
 }
 
@@ -177,6 +234,7 @@ impl MissionSource {
     pub fn load(&self, reader: &mut FileReader) -> Result<Content, Box<FileRecord>> {
         let content = match &self.place {
             Place::File(path) => reader.read(path),
+            Place::Gzip(path) => reader.read_gzip(path),
             Place::Entry { archive, index, .. } => reader.read_entry(archive, *index),
         };
         content.map_err(|finding| Box::new(FileRecord::refused(&self.path, FileKind::Mission, "", 0, finding)))
@@ -187,6 +245,8 @@ impl MissionSource {
     pub fn bytes(&self) -> u64 {
         match &self.place {
             Place::File(path) => std::fs::metadata(path).map_or(0, |m| m.len()),
+            // What it unpacks to is only known in the end: telemetry shrinks to a tenth.
+            Place::Gzip(path) => std::fs::metadata(path).map_or(0, |m| 12 * m.len()),
             Place::Entry { bytes, .. } => *bytes,
         }
     }
@@ -195,7 +255,7 @@ impl MissionSource {
     #[must_use]
     pub fn stamp(&self) -> Option<FileStamp> {
         match &self.place {
-            Place::File(path) | Place::Entry { archive: path, .. } => FileStamp::of(path),
+            Place::File(path) | Place::Gzip(path) | Place::Entry { archive: path, .. } => FileStamp::of(path),
         }
     }
 }

@@ -91,6 +91,9 @@ pub fn read(source: &MissionSource, content: &Content, options: &MissionOptions)
     let mut reader = Reader::new(clock);
     telemetry.for_each(|i, row| reader.take(i, row));
     let Reader { adder, notes, span, loads, .. } = reader;
+    if let Some(finding) = notes.refusal(&telemetry, &content.bytes) {
+        return refused(finding);
+    }
     let Some((first_s, last_s)) = span else {
         let (start, end) = (source.start, source.end);
         let message = format!("no row lies between {start} and {end}, as the file's name says; check name and {TIME}");

@@ -2,12 +2,19 @@
 
 use cabin::LoadChange;
 
+use crate::parse::likely_cause;
 use crate::segments::{Adder, Clock};
 use crate::telemetry::{AMBIENT, DOOR, PASSENGERS, Row, TIME, Telemetry};
 use crate::{Finding, FindingKind};
 
 /// Largest believable number of passengers: an articulated bus holds about 150.
 const MAX_PASSENGERS: f64 = 250.0;
+/// How far below zero a counter of passengers may drift.
+const MAX_DRIFT: f64 = 10.0;
+/// Share of a needed column's values above which a file with unusable ones is refused.
+const MAX_UNUSABLE_SHARE: f64 = 0.1;
+/// So few say nothing of the column, where others can be used.
+const FEW_UNUSABLE: u64 = 5;
 /// Below this a temperature in K is one in °C.
 const COLDEST_K: f64 = 150.0;
 
@@ -36,6 +43,8 @@ pub(super) struct Notes {
     gap_seconds: i64,
     unreadable_passengers: Note,
     impossible_passengers: Note,
+    drifted_passengers: Note,
+    missing_passengers: u64,
     unreadable_door: Note,
     impossible_door: Note,
     missing_door: Note,
@@ -78,7 +87,12 @@ impl Reader {
         let mut state = self.adder.state();
         match row.passengers {
             Some(count) if (0.0..=MAX_PASSENGERS).contains(&count) => state.passengers = count,
-            Some(count) if count.is_nan() => {}
+            Some(count) if count.is_nan() => notes.missing_passengers += 1,
+            // Counters drift: what is a little below none is none.
+            Some(count) if (-MAX_DRIFT..0.0).contains(&count) => {
+                state.passengers = 0.0;
+                notes.drifted_passengers.at(i);
+            }
             Some(_) => notes.impossible_passengers.at(i),
             None => notes.unreadable_passengers.at(i),
         }
@@ -107,14 +121,41 @@ impl Reader {
 }
 
 impl Notes {
+    /// Why a mission of so many rows is refused: a needed column that is mostly unusable.
+    pub fn refusal(&self, telemetry: &Telemetry, bytes: &[u8]) -> Option<Finding> {
+        let rows = telemetry.len() as u64;
+        let columns = [
+            (TIME, self.unreadable_time, Note::default(), rows),
+            (PASSENGERS, self.unreadable_passengers, self.impossible_passengers, rows - self.missing_passengers),
+            (DOOR, self.unreadable_door, self.impossible_door, rows - self.missing_door.count),
+        ];
+        columns.into_iter().find_map(|(column, unreadable, impossible, values)| {
+            let unusable = unreadable.count + impossible.count;
+            let few = unusable < FEW_UNUSABLE && unusable < values;
+            if few || unusable as f64 <= MAX_UNUSABLE_SHARE * values as f64 {
+                return None;
+            }
+            let line = telemetry.line(unreadable.row.or(impossible.row)?);
+            let text = text_at(bytes, line, column).unwrap_or_default();
+            let message = format!(
+                "{text:?}: {unusable} of {values} values cannot be used, more than {:.0} %; probably {}",
+                100.0 * MAX_UNUSABLE_SHARE,
+                likely_cause(&text)
+            );
+            Some(Finding::whole(FindingKind::RefusedValue, message).in_column(column).at_line(line).times(unusable))
+        })
+    }
+
     pub fn findings(mut self, telemetry: &Telemetry, bytes: &[u8], last_s: i64) -> Vec<Finding> {
-        use FindingKind::{DuplicateRow, MissingValue, OutOfRange, RefusedRow, RefusedValue, TimeGap, WrongUnit};
+        use FindingKind::{
+            DuplicateRow, MissingValue, NegativeOffset, OutOfRange, RefusedRow, RefusedValue, TimeGap, WrongUnit,
+        };
         // The last row of a mission may have no flags: nothing follows that would need them.
         if self.missing_door.count == 1 && self.last_missing_door_s == last_s {
             self.missing_door = Note::default();
         }
         let gaps = format!("{} s without a row; the state before holds", self.gap_seconds);
-        let notes: [(Note, FindingKind, &str, &str); 12] = [
+        let notes: [(Note, FindingKind, &str, &str); 13] = [
             (self.unreadable_time, RefusedRow, TIME, "not a whole number of seconds since 1970; correct the rows"),
             (self.outside, RefusedRow, TIME, "outside the span that the file's name says; correct rows or name"),
             (self.backwards, RefusedRow, TIME, "time runs backwards; sort the file by time"),
@@ -122,6 +163,12 @@ impl Notes {
             (self.gaps, TimeGap, TIME, &gaps),
             (self.unreadable_passengers, RefusedValue, PASSENGERS, "not a number; the last count holds"),
             (self.impossible_passengers, OutOfRange, PASSENGERS, "outside 0 … 250 passengers; the last count holds"),
+            (
+                self.drifted_passengers,
+                NegativeOffset,
+                PASSENGERS,
+                "the counter drifts below none; taken as an empty bus",
+            ),
             (self.unreadable_door, RefusedValue, DOOR, "not 0, 1 or NaN; the last state holds"),
             (self.impossible_door, OutOfRange, DOOR, "not 0, 1 or NaN; the last state holds"),
             (self.missing_door, MissingValue, DOOR, "no state; the last one holds"),
@@ -132,10 +179,12 @@ impl Notes {
             let row = note.row?;
             let line = telemetry.line(row);
             let text = match kind {
-                RefusedRow | RefusedValue | OutOfRange | WrongUnit => match text_at(bytes, line, column) {
-                    Some(text) => format!("{text:?}: {message}"),
-                    None => message.to_owned(),
-                },
+                RefusedRow | RefusedValue | OutOfRange | WrongUnit | NegativeOffset => {
+                    match text_at(bytes, line, column) {
+                        Some(text) => format!("{text:?}: {message}"),
+                        None => message.to_owned(),
+                    }
+                }
                 _ => message.to_owned(),
             };
             let finding = Finding::whole(kind, text).in_column(column).at_line(line);

@@ -90,7 +90,8 @@ pub fn discover(
     format: &WeatherFormat,
 ) -> Result<Vec<(String, PathBuf)>, IngestError> {
     let format = format.reader();
-    let files = list(base, pattern)?;
+    let mut files = list(base, pattern)?;
+    files.retain(|f| f.is_file());
     // One file named by the study is taken as it is called.
     let single = base.join(pattern).is_file();
     let name = |p: &PathBuf| p.file_name().map(|n| n.to_string_lossy().to_lowercase()).unwrap_or_default();

@@ -1,0 +1,151 @@
+//! Inputs as people have them: what common tools make of telemetry is read as it was meant, or refused with the likely cause.
+
+#![expect(clippy::unwrap_used, reason = "a test ends where something is not as expected")]
+
+mod common;
+
+use common::Scratch;
+use std::io::Write;
+
+const SAMPLES: &str = "SELECT sample_id, passengers, door_open_fraction, ambient_temperature_c FROM sample";
+
+/// One mission that is only joined with weather, and its file.
+fn one() -> (Scratch, String) {
+    let scratch = Scratch::demo(1);
+    scratch.edit("study.toml", "{ from = 0.0, to = 2.0, step = 0.125 }", "[1.0]");
+    scratch.edit("study.toml", "pmv_limits = [0.0, 0.5, 1.0, 1.5, 2.0]", "pmv_limits = []");
+    let file = format!("ztbus/{}", scratch.missions()[0]);
+    (scratch, file)
+}
+
+/// The telemetry with one column changed.
+fn with_column(text: &str, column: &str, change: impl Fn(&str) -> String) -> String {
+    let place = text.lines().next().unwrap().split(',').position(|name| name == column).unwrap();
+    let changed = |(i, line): (usize, &str)| {
+        if i == 0 {
+            return line.to_owned();
+        }
+        let fields = line.split(',').enumerate();
+        fields.map(|(i, f)| if i == place { change(f) } else { f.to_owned() }).collect::<Vec<_>>().join(",")
+    };
+    text.lines().enumerate().map(changed).collect::<Vec<_>>().join("\n") + "\n"
+}
+
+#[test]
+fn prop_numbers_and_flags_of_common_tools_are_read_as_they_were_meant() {
+    let (scratch, file) = one();
+    let text = scratch.read(&file);
+    scratch.expect(0, &["run"]);
+    let meant = scratch.exact(SAMPLES).unwrap();
+    let flags = |f: &str| match f {
+        "1" => "True".to_owned(),
+        "0" => "False".to_owned(),
+        other => other.to_owned(),
+    };
+    let empty = |f: &str| if f == "NaN" { String::new() } else { f.to_owned() };
+    for (what, changed) in [
+        ("doors True and False", with_column(&text, "status_doorIsOpen", flags)),
+        ("seconds with a decimal", with_column(&text, "time_unix", |f| format!("{f}.0"))),
+        ("empty counts", with_column(&text, "itcs_numberOfPassengers", empty)),
+    ] {
+        scratch.write(&file, changed);
+        let run = scratch.expect(0, &["run"]);
+        assert!(run.stderr.contains("1 read now"), "{what}: {}", run.stderr);
+        assert_eq!(meant, scratch.exact(SAMPLES).unwrap(), "{what}");
+        assert_eq!(scratch.query("SELECT count(*) FROM data_quality WHERE kind = 'refused_value'"), [["0"]], "{what}");
+    }
+}
+
+#[test]
+fn cli_a_counter_that_drifts_below_none_means_an_empty_bus() {
+    let (scratch, file) = one();
+    // Three hours with seven on board, and from half of them on two less than none.
+    let text = scratch.read(&file);
+    let count = std::cell::Cell::new(0);
+    let drifting = with_column(&text, "itcs_numberOfPassengers", |_| {
+        count.set(count.get() + 1);
+        if count.get() <= 1800 { "7".to_owned() } else { "-2".to_owned() }
+    });
+    scratch.write(&file, drifting);
+    scratch.expect(0, &["run"]);
+    assert_eq!(scratch.query("SELECT passengers FROM sample ORDER BY sample_id LIMIT 2"), [["3.5"], ["0.0"]]);
+    let noted = scratch.query("SELECT kind, line FROM data_quality WHERE column_name = 'itcs_numberOfPassengers'");
+    assert_eq!(noted, [["negative_offset", "1802"]]);
+}
+
+#[test]
+fn cli_a_needed_column_that_is_mostly_unusable_refuses_the_file_with_the_cause() {
+    let (scratch, file) = one();
+    let text = scratch.read(&file);
+    for (column, value, cause) in [
+        ("itcs_numberOfPassengers", "\"3,5\"", "\"3,5\": "),
+        ("status_doorIsOpen", "open", "\"open\": "),
+        ("itcs_numberOfPassengers", "4711", "\"4711\": "),
+    ] {
+        scratch.write(&file, with_column(&text, column, |_| value.to_owned()));
+        let run = scratch.expect(3, &["run"]);
+        assert!(run.stderr.contains(&format!("refused: {file}, line 2, column {column}: {cause}")), "{}", run.stderr);
+        assert!(run.stderr.contains("values cannot be used, more than 10 %; probably "), "{}", run.stderr);
+    }
+    scratch.write(&file, with_column(&text, "itcs_numberOfPassengers", |_| "\"3,5\"".to_owned()));
+    assert!(scratch.expect(3, &["run"]).stderr.contains("decimal commas; export the file with decimal points"));
+    // A few of them are news: the last state holds in their place.
+    let count = std::cell::Cell::new(0);
+    let few = with_column(&text, "status_doorIsOpen", |f| {
+        count.set(count.get() + 1);
+        if count.get() % 100 == 0 { "ajar".to_owned() } else { f.to_owned() }
+    });
+    scratch.write(&file, few);
+    let run = scratch.expect(1, &["run"]);
+    let said = format!(
+        "1 missions have values that cannot be used, the first: {file}, line 101, column status_doorIsOpen: \"ajar\""
+    );
+    assert!(run.stderr.contains(&said), "{}", run.stderr);
+}
+
+#[test]
+fn cli_missions_are_found_wherever_people_keep_them() {
+    let scratch = Scratch::demo(4);
+    scratch.edit("study.toml", "{ from = 0.0, to = 2.0, step = 0.125 }", "[1.0]");
+    scratch.edit("study.toml", "pmv_limits = [0.0, 0.5, 1.0, 1.5, 2.0]", "pmv_limits = []");
+    scratch.expect(0, &["run"]);
+    let meant = scratch.exact(SAMPLES).unwrap();
+    let names = scratch.missions();
+    // One in a sub-folder, one compressed, one in an archive of the macOS Finder; and what nobody wants read.
+    std::fs::create_dir_all(scratch.path("ztbus/2022/may")).unwrap();
+    std::fs::rename(scratch.path("ztbus").join(&names[0]), scratch.path("ztbus/2022/may").join(&names[0])).unwrap();
+    let mut gzip = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+    gzip.write_all(scratch.read(&format!("ztbus/{}", names[1])).as_bytes()).unwrap();
+    scratch.write(&format!("ztbus/{}.gz", names[1]), gzip.finish().unwrap());
+    std::fs::remove_file(scratch.path("ztbus").join(&names[1])).unwrap();
+    let mut zip = zip::ZipWriter::new(std::fs::File::create(scratch.path("ztbus/finder.zip")).unwrap());
+    for name in [names[2].clone(), format!("__MACOSX/._{}", names[2]), ".DS_Store".to_owned()] {
+        zip.start_file(&name, zip::write::SimpleFileOptions::default()).unwrap();
+        let text = if name == names[2] { scratch.read(&format!("ztbus/{name}")) } else { "\u{0}\u{5}".to_owned() };
+        zip.write_all(text.as_bytes()).unwrap();
+    }
+    zip.finish().unwrap();
+    std::fs::remove_file(scratch.path("ztbus").join(&names[2])).unwrap();
+    scratch.write(&format!("ztbus/._{}", names[3]), "\u{0}\u{5}");
+    scratch.write("ztbus/metadata_2022.csv", "a,b\n");
+    let run = scratch.expect(0, &["run"]);
+    assert!(run.stderr.contains("4 missions: 0 read now, 0 no longer there"), "{}", run.stderr);
+    assert_eq!(meant, scratch.exact(SAMPLES).unwrap());
+
+    // What is not read is said.
+    let mut zip = zip::ZipWriter::new(std::fs::File::create(scratch.path("ztbus/outer.zip")).unwrap());
+    zip.start_file("inner.zip", zip::write::SimpleFileOptions::default()).unwrap();
+    zip.finish().unwrap();
+    scratch.write("ztbus/more.tar", "");
+    #[cfg(unix)]
+    std::os::unix::fs::symlink("gone.csv", scratch.path("ztbus/link.csv")).unwrap();
+    let run = scratch.expect(1, &["run"]);
+    assert!(
+        run.stderr.contains("refused: ztbus/outer.zip!inner.zip: such an archive is not read; unpack it"),
+        "{}",
+        run.stderr
+    );
+    assert!(run.stderr.contains("refused: ztbus/more.tar: such an archive"), "{}", run.stderr);
+    assert!(!cfg!(unix) || run.stderr.contains("refused: ztbus/link.csv: the link leads nowhere"), "{}", run.stderr);
+    assert_eq!(meant, scratch.exact(SAMPLES).unwrap());
+}
