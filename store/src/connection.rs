@@ -131,6 +131,13 @@ pub fn lock_path(database: &Path) -> PathBuf {
     PathBuf::from(path)
 }
 
+/// Whether a transaction is half written in the file, or one is being written.
+fn has_journal(path: &Path) -> bool {
+    let mut journal = path.as_os_str().to_owned();
+    journal.push("-journal");
+    Path::new(&journal).exists()
+}
+
 /// How a database is read.
 fn reading(path: &Path) -> SqliteConnectOptions {
     SqliteConnectOptions::new()
@@ -149,6 +156,7 @@ impl Store {
     /// [`StoreError`] where the file cannot be opened or its schema is unknown.
     pub fn open(path: &Path) -> Result<Self, StoreError> {
         if path.exists() {
+            Self::roll_back(path);
             let mut looked_at = Self::connect(path, &reading(path), true)?;
             let current = looked_at.is_current();
             looked_at.close()?;
@@ -195,7 +203,7 @@ impl Store {
         if !path.exists() {
             return Err(StoreError::Missing(path.to_owned()));
         }
-        Self::roll_back(path);
+        Self::roll_back_for_reader(path);
         let options = reading(path);
         let mut store = Self::connect(path, &options, true)?;
         if store.is_current()? {
@@ -207,24 +215,28 @@ impl Store {
     }
 
     /// Undoes the transaction that a killed run has left half written in the file, which SQLite does at the first read of somebody
-    /// who may write. Where it cannot be done, the reader's own error says so.
+    /// who may write. Where it cannot be done, the next reading says so. Whoever calls holds the lock.
     fn roll_back(path: &Path) {
-        let mut journal = path.as_os_str().to_owned();
-        journal.push("-journal");
-        if !Path::new(&journal).exists() {
+        if has_journal(path) {
+            let options = SqliteConnectOptions::new().filename(path).busy_timeout(BUSY_TIMEOUT);
+            let _ = Self::connect(path, &options, true).and_then(|mut store| {
+                store.is_empty()?;
+                store.close()
+            });
+        }
+    }
+
+    /// The same for a reader, who takes the lock for it where no run has it: a run's journal is its own.
+    fn roll_back_for_reader(path: &Path) {
+        if !has_journal(path) {
             return;
         }
         let lock = lock_path(path);
         let Ok(file) = File::options().write(true).create(true).truncate(false).open(&lock) else { return };
         if file.try_lock().is_err() {
-            // A run is at work: the journal is its own.
             return;
         }
-        let options = SqliteConnectOptions::new().filename(path).busy_timeout(BUSY_TIMEOUT);
-        let _ = Self::connect(path, &options, true).and_then(|mut store| {
-            store.is_empty()?;
-            store.close()
-        });
+        Self::roll_back(path);
         let _ = std::fs::remove_file(&lock);
     }
 
