@@ -139,7 +139,18 @@ fn cli_missions_are_found_wherever_people_keep_them() {
     scratch.write("ztbus/more.tar", "");
     #[cfg(unix)]
     std::os::unix::fs::symlink("gone.csv", scratch.path("ztbus/link.csv")).unwrap();
+    std::fs::create_dir_all(scratch.path("ztbus/1/2/3/4/5/6/7/8/9")).unwrap();
+    #[cfg(unix)]
+    assert!(
+        std::process::Command::new("mkfifo")
+            .arg(scratch.path("ztbus/B183_2022-01-01_00-00-00_2022-01-01_01-00-00.csv.gz"))
+            .status()
+            .unwrap()
+            .success()
+    );
     let run = scratch.expect(1, &["run"]);
+    assert!(run.stderr.contains("refused: ztbus/1/2/3/4/5/6/7/8/9: more than 8 folders"), "{}", run.stderr);
+    assert!(!cfg!(unix) || run.stderr.contains("_01-00-00.csv.gz: not a regular file"), "{}", run.stderr);
     assert!(
         run.stderr.contains("refused: ztbus/outer.zip!inner.zip: such an archive is not read; unpack it"),
         "{}",

@@ -104,13 +104,7 @@ impl FileReader {
     /// # Errors
     /// A finding that says why it cannot be read.
     pub(crate) fn read(&mut self, path: &Path) -> Result<Content, Finding> {
-        // A pipe would be waited for without end.
-        if std::fs::metadata(path).is_ok_and(|m| !m.is_file()) {
-            let message = "not a regular file; give a file";
-            return Err(Finding::whole(FindingKind::Unreadable, message));
-        }
-        let file = File::open(path).map_err(|e| unreadable(&e))?;
-        let metadata = file.metadata().map_err(|e| unreadable(&e))?;
+        let (file, metadata) = open_regular(path)?;
         let content = limited(file, metadata.len(), std::mem::take(&mut self.buffer))?;
         Ok(Content { stamp: FileStamp::settled(&metadata), ..content })
     }
@@ -120,11 +114,7 @@ impl FileReader {
     /// # Errors
     /// A finding that says why it cannot be read.
     pub(crate) fn read_gzip(&mut self, path: &Path) -> Result<Content, Finding> {
-        let file = File::open(path).map_err(|e| unreadable(&e))?;
-        let metadata = file.metadata().map_err(|e| unreadable(&e))?;
-        if !metadata.is_file() {
-            return Err(Finding::whole(FindingKind::Unreadable, "not a regular file; give a file"));
-        }
+        let (file, metadata) = open_regular(path)?;
         let unpacked = MultiGzDecoder::new(BufReader::new(file));
         let content = limited(unpacked, 0, std::mem::take(&mut self.buffer))?;
         Ok(Content { stamp: FileStamp::settled(&metadata), ..content })
@@ -153,6 +143,16 @@ impl FileReader {
             self.buffer = content.bytes;
         }
     }
+}
+
+/// Opens a file; a pipe would be waited for without end.
+fn open_regular(path: &Path) -> Result<(File, Metadata), Finding> {
+    if std::fs::metadata(path).is_ok_and(|m| !m.is_file()) {
+        return Err(Finding::whole(FindingKind::Unreadable, "not a regular file; give a file"));
+    }
+    let file = File::open(path).map_err(|e| unreadable(&e))?;
+    let metadata = file.metadata().map_err(|e| unreadable(&e))?;
+    Ok((file, metadata))
 }
 
 fn limited(source: impl Read, size: u64, mut bytes: Vec<u8>) -> Result<Content, Finding> {

@@ -1,7 +1,7 @@
 //! Where missions are found, and which of them cannot be used.
 
 use chrono::{DateTime, NaiveDateTime, TimeDelta, Utc};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::OsStr;
 use std::path::{Component, Path, PathBuf};
 
@@ -99,16 +99,7 @@ impl Discovery {
             return;
         }
         if path.is_dir() {
-            let Ok(entries) = std::fs::read_dir(path) else {
-                let message = "the folder cannot be read; check its permissions";
-                return self.refuse(&label, Finding::whole(FindingKind::Unreadable, message));
-            };
-            let mut inside: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
-            inside.sort();
-            if depth < DEEPEST {
-                inside.iter().for_each(|path| self.take_path(base, path, depth + 1));
-            }
-            return;
+            return self.take_folder(base, path, depth);
         }
         if path.is_symlink() && !path.exists() {
             let message = "the link leads nowhere; its target is gone: bring it back, or remove the link";
@@ -122,6 +113,24 @@ impl Discovery {
             "zip" => self.take_archive(base, path),
             other if PACKED.contains(&other) => self.refuse_packed(&label),
             _ => {}
+        }
+    }
+
+    fn take_folder(&mut self, base: &Path, path: &Path, depth: usize) {
+        let refused = |message: String| Finding::whole(FindingKind::Unreadable, message);
+        if depth == DEEPEST {
+            let message =
+                format!("more than {DEEPEST} folders in each other, or a link to one above; nothing in it is read");
+            return self.refuse(&label(base, path), refused(message));
+        }
+        let listed = std::fs::read_dir(path)
+            .and_then(|entries| entries.map(|entry| Ok(entry?.path())).collect::<std::io::Result<BTreeSet<PathBuf>>>());
+        match listed {
+            Ok(inside) => inside.iter().for_each(|path| self.take_path(base, path, depth + 1)),
+            Err(error) => {
+                let message = format!("the folder cannot be read: {error}; check its permissions");
+                self.refuse(&label(base, path), refused(message));
+            }
         }
     }
 
