@@ -1,11 +1,12 @@
 //! Missions into the database; one whose content is known is not parsed again.
 
-use ingest::mission::{self, MissionReading, MissionSource, mission_name};
+use ingest::mission::{self, MissionReading, MissionSource};
 use ingest::{FileKind, FileReader, FileRecord, FileStamp, Finding, FindingKind};
 use std::collections::BTreeMap;
-use store::{KnownFile, Store};
+use store::Store;
 use study::{Study, keys};
 
+use crate::before::{Before, Standing};
 use crate::budget::Budget;
 use crate::in_order::in_order;
 use crate::inputs::{Inputs, refusal_key};
@@ -42,18 +43,15 @@ pub(crate) fn ingest(
     let wanted: Vec<&MissionSource> =
         found.missions.iter().enumerate().filter(|(i, _)| !overlapping.contains_key(i)).map(|(_, m)| m).collect();
 
-    let before = Before::of(&known);
+    let before = Before::of(study, inputs, &known);
     let budget = Budget::new();
-    let rehash = inputs.rehash();
     progress.begin("missions", wanted.len() as u64);
     let read = |reader: &mut FileReader, source: &&MissionSource| {
         let path = source.path.clone();
-        let of_before = before.find(&known, source);
+        let of_before = before.find(source);
         let known_as = of_before.map(|(path, _)| path.clone());
         let of_before = of_before.map(|(_, file)| file);
-        if let Some(file) = of_before.filter(|f| !rehash && f.stamp.is_some() && f.stamp == source.stamp())
-            && file.reading_key == keys::mission_key(study, &file.blake3)
-        {
+        if let (Some(file), Standing::Same | Standing::Moved) = (of_before, before.standing(source)) {
             return Read { path, known_as, blake3: file.blake3.clone(), outcome: Outcome::Known(None) };
         }
         // Held until the content is parsed.
@@ -129,28 +127,6 @@ pub(crate) fn ingest(
     let forgotten = store.keep_files(FileKind::Mission, &paths)?;
     let message = format!("{} missions: {read_now} read now, {forgotten} no longer there", paths.len());
     Ok(Work { computed: read_now, withdrawn: forgotten, total: paths.len() as u64, message })
-}
-
-/// Where each mission was found before. A mission is known by its name and content: it may lie in another folder now, or in an
-/// archive.
-pub(crate) struct Before<'k> {
-    path_of_name: BTreeMap<&'k str, &'k String>,
-}
-
-impl<'k> Before<'k> {
-    pub fn of(known: &'k BTreeMap<String, KnownFile>) -> Self {
-        let read = known.iter().filter(|(_, file)| !file.blake3.is_empty());
-        Self { path_of_name: read.map(|(path, _)| (mission_name(path), path)).collect() }
-    }
-
-    pub fn find(
-        &self,
-        known: &'k BTreeMap<String, KnownFile>,
-        source: &MissionSource,
-    ) -> Option<(&'k String, &'k KnownFile)> {
-        let elsewhere = || self.path_of_name.get(source.name.as_str()).and_then(|path| known.get_key_value(*path));
-        known.get_key_value(&source.path).filter(|(_, file)| !file.blake3.is_empty()).or_else(elsewhere)
-    }
 }
 
 /// Says that samples are to be joined anew, where `ingest` runs alone.

@@ -6,6 +6,7 @@
 
 mod backup;
 mod basis;
+mod before;
 mod budget;
 mod canyon;
 mod check;

@@ -1,7 +1,7 @@
 //! What a run would do, and why: the same questions that each stage asks before it works, with the answers in words.
 
-use ingest::mission::{self, MissionSource};
-use ingest::{FileKind, FileStamp};
+use ingest::FileKind;
+use ingest::mission;
 use serde::Serialize;
 use simulate::Replay;
 use std::collections::{BTreeMap, BTreeSet};
@@ -9,8 +9,8 @@ use store::{RecordedStage, SimulationId, Store, StoredGrid};
 use study::{Study, keys};
 
 use crate::basis::SimulationBasis;
+use crate::before::{Before, Standing};
 use crate::check::{POINTS_A_SECOND, ROWS_A_SECOND, SIMULATED_A_SECOND};
-use crate::ingest::Before;
 use crate::missions::{WeatherAndShade, missions};
 use crate::{Inputs, PipelineError, Stage, freshness, open, report};
 
@@ -85,19 +85,21 @@ impl Planning<'_> {
         let found = mission::discover(&study.base, &study.missions_path, &study.buses)?;
         let overlapping: BTreeSet<usize> = mission::overlaps(&found.missions).into_iter().map(|(i, _)| i).collect();
         let known = self.store.known_files(FileKind::Mission)?;
-        let before = Before::of(&known);
+        let before = Before::of(study, &self.inputs, &known);
         let mut reasons: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
         let (mut rows, mut to_read) = (0, 0);
         let wanted = found.missions.iter().enumerate().filter(|(i, _)| !overlapping.contains(i)).map(|(_, m)| m);
         for source in wanted {
-            let Some(reason) = self.why_read(source, &known, &before) else { continue };
+            let standing = before.standing(source);
+            let Some(reason) = words(standing) else { continue };
             reasons.entry(reason).or_default().push(&source.path);
-            if reason != MOVED {
+            if standing != Standing::Moved {
                 let seconds = (source.end - source.start).num_seconds() + 1;
                 rows += seconds;
                 to_read += 1;
                 // What is only hashed will mostly be found unchanged.
-                let samples = if reason == HASHED { 0 } else { seconds / i64::from(study.missions.segment_s) };
+                let samples =
+                    if standing == Standing::Unsure { 0 } else { seconds / i64::from(study.missions.segment_s) };
                 self.new_samples += samples.unsigned_abs();
             }
         }
@@ -115,25 +117,6 @@ impl Planning<'_> {
         });
         let why = why.collect();
         self.planned(Stage::Ingest, to_read, rows as f64 / ROWS_A_SECOND, why)
-    }
-
-    fn why_read(
-        &self,
-        source: &MissionSource,
-        known: &BTreeMap<String, store::KnownFile>,
-        before: &Before<'_>,
-    ) -> Option<&'static str> {
-        let Some((path, file)) = before.find(known, source) else { return Some("new") };
-        let stamp: Option<FileStamp> = source.stamp();
-        if file.reading_key != keys::mission_key(self.study, &file.blake3) {
-            Some("to be read with other settings")
-        } else if self.inputs.rehash() || file.stamp.is_none() || file.stamp != stamp {
-            Some(HASHED)
-        } else if *path != source.path {
-            Some(MOVED)
-        } else {
-            None
-        }
     }
 
     fn shade(&mut self, ingest: &StagePlan) -> Result<StagePlan, PipelineError> {
@@ -271,10 +254,17 @@ impl Planning<'_> {
     }
 }
 
-/// A mission that looks different, or whose look is not to be believed.
-const HASHED: &str = "to be hashed, for size, time or inode are not as they were";
-/// A mission that is known again elsewhere.
-const MOVED: &str = "known from another place";
+/// What is to be done about a mission; nothing where it is as it was.
+fn words(standing: Standing) -> Option<&'static str> {
+    match standing {
+        Standing::New => Some("new"),
+        Standing::OtherSettings => Some("to be read with other settings"),
+        Standing::Unsure => Some("to be hashed, for size, time or inode are not as they were"),
+        Standing::Moved => Some("known from another place"),
+        Standing::Same => None,
+    }
+}
+
 /// A usual mission of ZTBus: its whole hours, and their seconds.
 const SAMPLES_A_MISSION: u64 = 9;
 const MISSION_S: f64 = 3600.0 * SAMPLES_A_MISSION as f64;
