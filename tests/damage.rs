@@ -9,9 +9,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
 fn small() -> Scratch {
-    let scratch = Scratch::demo(3);
-    scratch.edit("study.toml", "{ from = 0.0, to = 2.0, step = 0.125 }", "[0.5, 1.0]");
-    scratch.edit("study.toml", "pmv_limits = [0.0, 0.5, 1.0, 1.5, 2.0]", "pmv_limits = [1.0]");
+    let scratch = Scratch::small(3, "[0.5, 1.0]", "[1.0]");
     scratch.expect(0, &["run"]);
     scratch
 }

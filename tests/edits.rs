@@ -11,7 +11,6 @@ use common::world::{WEATHER, World};
 use common::{CONTENT, Scratch};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
-use std::process::{Command, Stdio};
 use std::time::Duration;
 
 struct Dice(ChaCha8Rng);
@@ -144,20 +143,6 @@ fn edit(world: &mut World, original: &World, dice: &mut Dice) -> &'static str {
     }
 }
 
-/// Starts a run and kills it after a while.
-fn killed_run(scratch: &Scratch, dice: &mut Dice) {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_busclimate"))
-        .current_dir(scratch.folder.path())
-        .args(["run", "--quiet"])
-        .stderr(Stdio::null())
-        .stdout(Stdio::null())
-        .spawn()
-        .unwrap();
-    std::thread::sleep(Duration::from_millis(dice.below(800) as u64));
-    let _ = child.kill();
-    child.wait().unwrap();
-}
-
 fn setting(name: &str, otherwise: u64) -> u64 {
     std::env::var(name).ok().and_then(|text| text.parse().ok()).unwrap_or(otherwise)
 }
@@ -190,7 +175,7 @@ fn prop_any_sequence_of_edits_and_kills_ends_where_a_run_from_scratch_does() {
                     story.push(format!("run: {}", run.status));
                 }
                 _ => {
-                    killed_run(&scratch, &mut dice);
+                    scratch.run_and_kill(Duration::from_millis(dice.below(800) as u64));
                     story.push("killed run".to_owned());
                 }
             }

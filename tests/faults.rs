@@ -124,17 +124,8 @@ fn cli_a_run_that_is_killed_at_any_moment_loses_nothing() {
         let whole_us = begin.elapsed().as_micros() as u64;
         for _ in 0..faults(8) {
             let scratch = night.copy();
-            let mut child = Command::new(PROGRAM)
-                .current_dir(scratch.folder.path())
-                .args(["run", "--quiet"])
-                .stdout(Stdio::null())
-                .stderr(Stdio::null())
-                .spawn()
-                .unwrap();
             let after_us = dice.next_u64() % whole_us;
-            std::thread::sleep(Duration::from_micros(after_us));
-            let _ = child.kill();
-            child.wait().unwrap();
+            scratch.run_and_kill(Duration::from_micros(after_us));
             night.judge(&scratch, &format!("killed after {after_us} µs of {whole_us} (from nothing: {})", night.cold));
         }
     }

@@ -11,9 +11,7 @@ const SAMPLES: &str = "SELECT sample_id, passengers, door_open_fraction, ambient
 
 /// One mission that is only joined with weather, and its file.
 fn one() -> (Scratch, String) {
-    let scratch = Scratch::demo(1);
-    scratch.edit("study.toml", "{ from = 0.0, to = 2.0, step = 0.125 }", "[1.0]");
-    scratch.edit("study.toml", "pmv_limits = [0.0, 0.5, 1.0, 1.5, 2.0]", "pmv_limits = []");
+    let scratch = Scratch::small(1, "[1.0]", "[]");
     let file = format!("ztbus/{}", scratch.missions()[0]);
     (scratch, file)
 }
@@ -105,9 +103,7 @@ fn cli_a_needed_column_that_is_mostly_unusable_refuses_the_file_with_the_cause()
 
 #[test]
 fn cli_missions_are_found_wherever_people_keep_them() {
-    let scratch = Scratch::demo(4);
-    scratch.edit("study.toml", "{ from = 0.0, to = 2.0, step = 0.125 }", "[1.0]");
-    scratch.edit("study.toml", "pmv_limits = [0.0, 0.5, 1.0, 1.5, 2.0]", "pmv_limits = []");
+    let scratch = Scratch::small(4, "[1.0]", "[]");
     scratch.expect(0, &["run"]);
     let meant = scratch.exact(SAMPLES).unwrap();
     let names = scratch.missions();

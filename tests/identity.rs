@@ -8,9 +8,7 @@ const OPTIMA: &str = "SELECT * FROM optimum ORDER BY sample_id, design, pmv_limi
 const SIMULATIONS: &str = "SELECT * FROM simulation ORDER BY mission, design, pmv_limit, controller";
 
 fn small() -> Scratch {
-    let scratch = Scratch::demo(4);
-    scratch.edit("study.toml", "{ from = 0.0, to = 2.0, step = 0.125 }", "[0.5, 0.7, 1.0]");
-    scratch.edit("study.toml", "pmv_limits = [0.0, 0.5, 1.0, 1.5, 2.0]", "pmv_limits = [1.0]");
+    let scratch = Scratch::small(4, "[0.5, 0.7, 1.0]", "[1.0]");
     scratch.expect(0, &["run"]);
     scratch
 }

@@ -8,7 +8,6 @@ mod common;
 use common::world::{WEATHER, World};
 use common::{CONTENT, Scratch};
 use std::collections::BTreeMap;
-use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 #[test]
@@ -31,16 +30,7 @@ fn prop_a_month_of_nights_with_kills_ends_where_one_run_does() {
         world.write(&scratch);
         let begin = Instant::now();
         if night % 3 == 2 {
-            let mut child = Command::new(env!("CARGO_BIN_EXE_busclimate"))
-                .current_dir(scratch.folder.path())
-                .args(["run", "--quiet"])
-                .stdout(Stdio::null())
-                .stderr(Stdio::null())
-                .spawn()
-                .unwrap();
-            std::thread::sleep(Duration::from_millis(37 * (night as u64 % 8)));
-            let _ = child.kill();
-            child.wait().unwrap();
+            scratch.run_and_kill(Duration::from_millis(37 * (night as u64 % 8)));
             eprintln!("night {night}: killed");
             continue;
         }

@@ -8,10 +8,7 @@ use common::Scratch;
 use std::collections::BTreeMap;
 
 fn small() -> Scratch {
-    let scratch = Scratch::demo(4);
-    scratch.edit("study.toml", "{ from = 0.0, to = 2.0, step = 0.125 }", "[0.5, 1.0]");
-    scratch.edit("study.toml", "pmv_limits = [0.0, 0.5, 1.0, 1.5, 2.0]", "pmv_limits = [1.0]");
-    scratch
+    Scratch::small(4, "[0.5, 1.0]", "[1.0]")
 }
 
 fn status(scratch: &Scratch, exit: i32) -> serde_json::Value {

@@ -16,12 +16,7 @@ fn small() -> Scratch {
 
 /// A run that takes some seconds, and is at work.
 fn start(scratch: &Scratch) -> Child {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_busclimate"))
-        .current_dir(scratch.folder.path())
-        .args(["run", "--threads", "1", "--quiet"])
-        .stdout(Stdio::null())
-        .spawn()
-        .unwrap();
+    let mut child = scratch.spawn(&["run", "--threads", "1", "--quiet"]);
     for _ in 0..1000 {
         if std::fs::read_to_string(scratch.path("study.db.lock")).is_ok_and(|text| text.ends_with('\n')) {
             return child;

@@ -6,7 +6,6 @@ mod common;
 
 use common::Scratch;
 use std::collections::BTreeSet;
-use std::process::{Command, Stdio};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -50,13 +49,9 @@ fn cli_ten_readers_never_see_half_a_result() {
                 }
             });
         }
-        let run = Command::new(env!("CARGO_BIN_EXE_busclimate"))
-            .current_dir(scratch.folder.path())
-            .args(["run", "--quiet"])
-            .stdout(Stdio::null())
-            .status();
+        let status = scratch.spawn(&["run", "--quiet"]).wait();
         over.store(true, Ordering::Relaxed);
-        assert!(run.unwrap().success());
+        assert!(status.unwrap().success());
     });
     let after = seen(&scratch);
     assert!(before.iter().zip(&after).all(|(b, a)| b != a), "the run changed nothing");

@@ -9,9 +9,7 @@ use common::Scratch;
 const WEATHER: &str = "weather/ogd-smn_sma_h_historical_2020-2029.csv";
 
 fn solved() -> Scratch {
-    let scratch = Scratch::demo(6);
-    scratch.edit("study.toml", "{ from = 0.0, to = 2.0, step = 0.125 }", "[0.5, 1.0]");
-    scratch.edit("study.toml", "pmv_limits = [0.0, 0.5, 1.0, 1.5, 2.0]", "pmv_limits = [1.0]");
+    let scratch = Scratch::small(6, "[0.5, 1.0]", "[1.0]");
     scratch.expect(0, &["run"]);
     scratch
 }

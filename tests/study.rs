@@ -12,10 +12,7 @@ const OPTIMA: &str = "SELECT * FROM optimum ORDER BY sample_id, design, pmv_limi
 
 /// A study of 12 missions that is quick to solve.
 fn small() -> Scratch {
-    let scratch = Scratch::demo(12);
-    scratch.edit("study.toml", "{ from = 0.0, to = 2.0, step = 0.125 }", "[0.0, 0.5, 1.0, 2.0]");
-    scratch.edit("study.toml", "pmv_limits = [0.0, 0.5, 1.0, 1.5, 2.0]", "pmv_limits = [1.0]");
-    scratch
+    Scratch::small(12, "[0.0, 0.5, 1.0, 2.0]", "[1.0]")
 }
 
 fn number(text: &str) -> f64 {
@@ -233,12 +230,7 @@ fn prop_a_killed_simulation_is_finished_by_the_next_run() {
     for stage in ["ingest", "shade", "solve"] {
         scratch.expect(0, &[stage]);
     }
-    let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_busclimate"))
-        .current_dir(scratch.folder.path())
-        .args(["simulate", "--threads", "1", "--quiet"])
-        .stdout(std::process::Stdio::null())
-        .spawn()
-        .unwrap();
+    let mut child = scratch.spawn(&["simulate", "--threads", "1", "--quiet"]);
     // Wherever it is when it dies, what it has committed is whole.
     let count = || number(&scratch.query("SELECT count(*) FROM simulation")[0][0]);
     for _ in 0..2000 {

@@ -9,6 +9,8 @@ use assert_cmd::Command;
 use sqlx::{Column, Connection, Row, SqliteConnection, TypeInfo, ValueRef};
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::process::{Child, Stdio};
+use std::time::Duration;
 use store::Store;
 use tempfile::TempDir;
 
@@ -62,6 +64,15 @@ impl Scratch {
         scratch
     }
 
+    /// The demo with a few missions, solved in few comfort windows and simulated in fewer, both as the study file lists them.
+    pub fn small(missions: usize, pmv_limits: &str, simulated: &str) -> Self {
+        let scratch = Self::demo(missions);
+        scratch.edit("study.toml", "{ from = 0.0, to = 2.0, step = 0.125 }", pmv_limits);
+        let limits = format!("pmv_limits = {simulated}");
+        scratch.edit("study.toml", "pmv_limits = [0.0, 0.5, 1.0, 1.5, 2.0]", &limits);
+        scratch
+    }
+
     pub fn path(&self, name: &str) -> PathBuf {
         self.folder.path().join(name)
     }
@@ -78,6 +89,25 @@ impl Scratch {
             stdout: String::from_utf8(output.stdout).unwrap(),
             stderr: String::from_utf8(output.stderr).unwrap(),
         }
+    }
+
+    /// Starts the program in the folder.
+    pub fn spawn(&self, arguments: &[&str]) -> Child {
+        std::process::Command::new(env!("CARGO_BIN_EXE_busclimate"))
+            .current_dir(self.folder.path())
+            .args(arguments)
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap()
+    }
+
+    /// Starts a run and kills it after a while, wherever it is.
+    pub fn run_and_kill(&self, after: Duration) {
+        let mut run = self.spawn(&["run", "--quiet"]);
+        std::thread::sleep(after);
+        let _ = run.kill();
+        run.wait().unwrap();
     }
 
     /// Runs the program and expects an exit status.
