@@ -190,7 +190,7 @@ impl Store {
     /// Completes the optima: renews the averages of the months that have changed, and records the stage.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn complete_optima(&mut self, record: &StageRecord) -> Result<(), StoreError> {
         let renew = [
             "DELETE FROM monthly_average WHERE month IN (SELECT month FROM stale_month)",
@@ -205,7 +205,7 @@ impl Store {
     /// Completes the simulations: renews what they come to in the year and by class, and records the stage.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn complete_simulations(&mut self, record: &StageRecord) -> Result<(), StoreError> {
         let renew = [
             "DELETE FROM simulation_month WHERE month IN (SELECT month FROM stale_simulation_month)",

@@ -213,7 +213,7 @@ impl Store {
     /// Refuses averages and a schema that are not as they were written.
     ///
     /// # Errors
-    /// [`StoreError::Damaged`], [`StoreError::Statement`].
+    /// [`StoreError::Damaged`], [`StoreError::Refused`].
     pub fn check_averages(&mut self) -> Result<(), StoreError> {
         let mut damaged = self.damaged_schema()?;
         damaged.extend(self.drive(async |c| damaged_averages(c).await)?);
@@ -224,7 +224,7 @@ impl Store {
     /// says so.
     ///
     /// # Errors
-    /// [`StoreError::Damaged`], [`StoreError::Statement`].
+    /// [`StoreError::Damaged`], [`StoreError::Refused`].
     pub fn check_stale_months(&mut self, stop: &dyn Fn() -> bool) -> Result<(), StoreError> {
         let of_stale_months = "SELECT p.* FROM hourly_sample AS s JOIN optimum_point AS p USING (sample_id)
             WHERE s.month IN (SELECT month FROM stale_month)";
@@ -235,7 +235,7 @@ impl Store {
     /// where `stop` says so.
     ///
     /// # Errors
-    /// [`StoreError::Damaged`], [`StoreError::Statement`].
+    /// [`StoreError::Damaged`], [`StoreError::Refused`].
     pub fn check_simulations(&mut self, stop: &dyn Fn() -> bool) -> Result<(), StoreError> {
         let of_stale_months = "SELECT * FROM simulated_mission
             WHERE month IN (SELECT month FROM stale_simulation_month)";
@@ -252,7 +252,7 @@ impl Store {
     /// where `stop` says so.
     ///
     /// # Errors
-    /// [`StoreError::Statement`] where the database cannot even be read.
+    /// [`StoreError::Refused`], [`StoreError::Damaged`] where the database cannot even be read.
     pub fn check_all(&mut self, stop: &dyn Fn() -> bool) -> Result<Checked, StoreError> {
         let damaged = self.damaged_schema()?;
         self.drive(async |c| {

@@ -25,7 +25,7 @@ impl Store {
     /// The files of a kind by path.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn known_files(&mut self, kind: FileKind) -> Result<BTreeMap<String, KnownFile>, StoreError> {
         self.drive_checked(async |c, damage| {
             let sql = "SELECT f.*, s.bytes AS stamp_bytes, s.modified_ns, s.inode
@@ -45,7 +45,7 @@ impl Store {
     /// Records how a file looks now, whose content is as it was.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn put_stamp(&mut self, path: &str, stamp: &FileStamp) -> Result<(), StoreError> {
         self.drive(async |c| {
             let sql = "SELECT source_file_id FROM source_file WHERE path = ?";
@@ -57,7 +57,7 @@ impl Store {
     /// A file that lies elsewhere now, with all that came from it. Whatever was known of its new path is forgotten.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn move_file(&mut self, from: &str, to: &str) -> Result<(), StoreError> {
         self.drive(async |c| {
             let mut tx = begin(c).await?;
@@ -71,7 +71,7 @@ impl Store {
     /// and another reading key is replaced, and with it whatever came from it.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn put_file(&mut self, file: &FileRecord, reading_key: &str) -> Result<(), StoreError> {
         self.drive(async |c| {
             let mut tx = begin(c).await?;
@@ -83,7 +83,7 @@ impl Store {
     /// Forgets the files of a kind whose path is not among `paths`, with all that came from them.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn keep_files(&mut self, kind: FileKind, paths: &[String]) -> Result<u64, StoreError> {
         let known = self.known_files(kind)?;
         self.drive(async |c| {
@@ -97,7 +97,7 @@ impl Store {
     /// The last second of an accepted file of a kind, and the file.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn newest_file(&mut self, kind: FileKind) -> Result<Option<(DateTime<Utc>, String)>, StoreError> {
         self.drive(async |c| {
             let sql = "SELECT last_utc, path FROM source_file WHERE kind = ? AND outcome = 'accepted' AND last_utc IS NOT NULL
@@ -110,7 +110,7 @@ impl Store {
     /// The input files by kind and path, with what was noticed in them.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn files(&mut self) -> Result<Vec<FileRecord>, StoreError> {
         self.drive_checked(async |c, damage| {
             let sql = "SELECT * FROM data_quality ORDER BY source_file_id, position";

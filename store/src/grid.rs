@@ -73,7 +73,7 @@ impl Store {
     /// The designs and windows that the optima belong to.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn grid(&mut self) -> Result<StoredGrid, StoreError> {
         self.drive_checked(async |c, damage| {
             let mut grid = StoredGrid::default();
@@ -97,7 +97,7 @@ impl Store {
     /// of what the study no longer has, go; a design under a new name keeps them.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn put_grid(&mut self, designs: &[DesignRow], windows: &[ComfortWindow]) -> Result<GridChange, StoreError> {
         let stored = self.grid()?;
         self.drive(async |c| {

@@ -7,6 +7,7 @@
 mod averages;
 mod checks;
 mod connection;
+mod error;
 mod files;
 mod grid;
 mod missions;
@@ -21,7 +22,8 @@ mod verification;
 mod views;
 
 pub use checks::Checked;
-pub use connection::{Store, StoreError, lock_path};
+pub use connection::{Store, lock_path};
+pub use error::StoreError;
 pub use files::KnownFile;
 pub use grid::{DesignRow, GridChange, StoredGrid};
 pub use missions::StoredSegment;

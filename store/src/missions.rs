@@ -19,7 +19,7 @@ impl Store {
     /// mission of the same path, with its samples and whatever came from them.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn put_mission(&mut self, reading: &MissionReading, reading_key: &str) -> Result<(), StoreError> {
         self.drive(async |c| {
             let mut tx = begin(c).await?;
@@ -41,7 +41,7 @@ impl Store {
     /// The segments of all accepted mission files, by mission and number.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn segments(&mut self) -> Result<Vec<StoredSegment>, StoreError> {
         self.drive_checked(async |c, damage| {
             let sql = "SELECT g.*, f.path AS source_path, f.reading_key
@@ -72,7 +72,7 @@ impl Store {
     /// How the load of a mission changes; nothing where nothing is stored.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn loads(&mut self, source_path: &str) -> Result<Vec<LoadChange>, StoreError> {
         self.drive_checked(async |c, damage| {
             let sql = "SELECT l.* FROM mission_load AS l JOIN source_file AS f USING (source_file_id) WHERE f.path = ?";

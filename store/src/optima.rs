@@ -110,7 +110,7 @@ impl Store {
     /// The optima that are missing of a grid that is the stored one, the samples that lack the same ones together.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn missing_optima(&mut self, grid: &StoredGrid) -> Result<Vec<MissingOptima>, StoreError> {
         self.drive(async |c| {
             // Counting is all that complete samples cost.
@@ -146,7 +146,7 @@ impl Store {
     /// The stored optima of the samples from `first` to `last`, in the order of samples, designs and windows.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn optima(&mut self, grid: &StoredGrid, first: i64, last: i64) -> Result<Vec<StoredOptimum>, StoreError> {
         self.drive_checked(async |c, damage| {
             let sql = "SELECT * FROM optimum_point WHERE sample_id BETWEEN ? AND ?
@@ -169,7 +169,7 @@ impl Store {
     /// How many stored points ended in which way.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn status_counts(&mut self) -> Result<StatusCounts, StoreError> {
         self.drive(async |c| {
             let all = sqlx::query("SELECT count(*) AS points FROM optimum_point").fetch_one(&mut *c).await?;
@@ -191,7 +191,7 @@ impl Store {
     /// windows in the order of the grid, append to the table and are fastest.
     ///
     /// # Errors
-    /// [`StoreError::Statement`], also where a point has its optimum already.
+    /// [`StoreError::Refused`], [`StoreError::Damaged`], also where a point has its optimum already.
     pub fn put_optima<'a>(
         &mut self,
         grid: &StoredGrid,

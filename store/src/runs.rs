@@ -68,7 +68,7 @@ impl Store {
     /// Records the start of a run; a run that was still marked as running was interrupted. Returns its number.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn start_run(&mut self, started: DateTime<Utc>, version: &str, study_hash: &str) -> Result<i64, StoreError> {
         self.drive(async |c| {
             sqlx::query("UPDATE run SET status = 'interrupted' WHERE status = 'running'").execute(&mut *c).await?;
@@ -82,7 +82,7 @@ impl Store {
     /// Records the end of a run.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn end_run(
         &mut self,
         run_id: i64,
@@ -119,7 +119,7 @@ impl Store {
     /// The latest run.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn last_run(&mut self) -> Result<Option<RunRow>, StoreError> {
         self.drive(async |c| {
             let sql = "SELECT run_id, started_utc, finished_utc, status, program_version, point_count, solved_count,
@@ -149,7 +149,7 @@ impl Store {
     /// Records what a stage of a run did, after those before it.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn put_run_stage(&mut self, run_id: i64, stage: &RunStage) -> Result<(), StoreError> {
         self.drive(async |c| {
             let sql = "INSERT INTO run_stage
@@ -170,7 +170,7 @@ impl Store {
     /// The stages of the latest run that had any.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn last_run_stages(&mut self) -> Result<Vec<RunStage>, StoreError> {
         let sql = "SELECT stage, computed_count, withdrawn_count, total_count, duration_s FROM run_stage
             WHERE run_id = (SELECT max(run_id) FROM run_stage) ORDER BY position";
@@ -188,7 +188,7 @@ impl Store {
     /// When a run last finished its work, with losses or without.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn last_success(&mut self) -> Result<Option<DateTime<Utc>>, StoreError> {
         self.drive(async |c| {
             let sql = "SELECT max(finished_utc) AS finished_utc FROM run WHERE status IN ('done', 'done with losses')";
@@ -199,7 +199,7 @@ impl Store {
     /// Pace of a stage: the seconds of one thing computed, from the latest run that computed any; `None` before.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn pace_s(&mut self, stage: &str) -> Result<Option<f64>, StoreError> {
         self.drive(async |c| {
             let sql = "SELECT duration_s / computed_count AS pace_s FROM run_stage

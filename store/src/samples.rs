@@ -17,7 +17,7 @@ impl Store {
     /// How many segments of accepted missions have neither a sample nor a reason why not.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn unjoined_segments(&mut self) -> Result<u64, StoreError> {
         let sql = "SELECT count(*) AS open FROM mission_segment AS g JOIN source_file AS f USING (source_file_id)
             WHERE f.outcome = 'accepted'
@@ -33,7 +33,7 @@ impl Store {
     /// optima; those of a changed or withdrawn one go. Returns how many samples are new or changed, and how many went.
     ///
     /// # Errors
-    /// [`StoreError::Statement`]; [`StoreError::UnknownFile`] where a sample's file is not stored.
+    /// [`StoreError::Refused`], [`StoreError::Damaged`]; [`StoreError::UnknownFile`] where a sample's file is not stored.
     pub fn put_samples(
         &mut self,
         samples: &[Sample],
@@ -89,7 +89,7 @@ impl Store {
     /// All samples by id.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn samples(&mut self) -> Result<Vec<Sample>, StoreError> {
         self.drive_checked(async |c, damage| Ok(stored_samples(c, damage).await?.into_values().collect()))
     }

@@ -99,7 +99,7 @@ impl Store {
     /// The keys of all missions that were simulated, or cannot be.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn simulation_keys(&mut self, grid: &StoredGrid) -> Result<BTreeMap<SimulationId, String>, StoreError> {
         self.drive(async |c| {
             // The rows of all ways to run the bus are written together.
@@ -125,7 +125,7 @@ impl Store {
     /// Gives simulated missions new keys, where the old ones say the same in another way.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn rekey_simulations(&mut self, grid: &StoredGrid, keys: &[(SimulationId, String)]) -> Result<(), StoreError> {
         self.drive(async |c| {
             let mut tx = begin(c).await?;
@@ -147,7 +147,7 @@ impl Store {
     /// Forgets simulated missions.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn forget_simulations(&mut self, grid: &StoredGrid, ids: &[SimulationId]) -> Result<(), StoreError> {
         self.drive(async |c| {
             let mut tx = begin(c).await?;
@@ -161,7 +161,7 @@ impl Store {
     /// Writes missions in one transaction; what is there of one is replaced.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn put_simulations(&mut self, grid: &StoredGrid, rows: &[SimulationRow]) -> Result<(), StoreError> {
         self.drive(async |c| {
             let mut tx = begin(c).await?;
@@ -180,7 +180,7 @@ impl Store {
     /// The table `simulation_annual`, in the order of the study.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn simulated_years(&mut self) -> Result<Vec<SimulatedYear>, StoreError> {
         let sql = "SELECT a.* FROM simulation_annual AS a
             JOIN hvac_design AS d ON d.name = a.design JOIN comfort_window AS w USING (pmv_min, pmv_max)
@@ -201,7 +201,7 @@ impl Store {
     /// The table `simulation_class`, in the order of the study and of the classes.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn simulated_classes(&mut self) -> Result<Vec<SimulatedClass>, StoreError> {
         let sql = "SELECT a.* FROM simulation_class AS a
             JOIN hvac_design AS d ON d.name = a.design JOIN comfort_window AS w USING (pmv_min, pmv_max)
@@ -225,7 +225,7 @@ impl Store {
     /// The view `simulation_failure`, by mission and in the order of the study.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn simulation_failures(&mut self) -> Result<Vec<SimulationFailure>, StoreError> {
         let sql = "SELECT a.* FROM simulation_failure AS a
             JOIN hvac_design AS d ON d.name = a.design JOIN comfort_window AS w USING (pmv_min, pmv_max)

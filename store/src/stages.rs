@@ -43,7 +43,7 @@ impl Store {
     /// The record of a stage; `None` where it is not complete.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn stage(&mut self, stage: RecordedStage) -> Result<Option<StageRecord>, StoreError> {
         self.drive(async |c| {
             let sql = "SELECT * FROM stage_record WHERE stage = ?";
@@ -59,7 +59,7 @@ impl Store {
     /// Records that a stage is complete for the inputs of a key.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn complete_stage(&mut self, stage: RecordedStage, record: &StageRecord) -> Result<(), StoreError> {
         self.drive(async |c| {
             let mut tx = begin(c).await?;
@@ -71,7 +71,7 @@ impl Store {
     /// Forgets that a stage is complete.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn reopen_stage(&mut self, stage: RecordedStage) -> Result<(), StoreError> {
         self.drive(async |c| {
             sqlx::query("DELETE FROM stage_record WHERE stage = ?").bind(stage.name()).execute(c).await?;
@@ -82,7 +82,7 @@ impl Store {
     /// What the study said when a stage was last done, by name; nothing where it never was.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn settings(&mut self, stage: &str) -> Result<BTreeMap<String, String>, StoreError> {
         self.drive(async |c| {
             let sql = "SELECT name, value FROM stage_setting WHERE stage = ? ORDER BY name";
@@ -94,7 +94,7 @@ impl Store {
     /// Records what the study said when a stage was done.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn put_settings(&mut self, stage: &str, settings: &BTreeMap<String, String>) -> Result<(), StoreError> {
         if self.settings(stage)? == *settings {
             return Ok(());
@@ -113,7 +113,7 @@ impl Store {
     /// The samples with what each was made from, by id.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn sample_keys(&mut self) -> Result<Vec<(i64, String)>, StoreError> {
         let sql = "SELECT sample_id, sample_key FROM hourly_sample ORDER BY sample_id";
         self.select(sql, |r| Ok((r.try_get("sample_id")?, r.try_get("sample_key")?)))

@@ -65,7 +65,7 @@ impl Store {
     /// Label, design and key of the simulation of each stored trace.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn trace_keys(&mut self) -> Result<Vec<[String; 3]>, StoreError> {
         let sql = "SELECT t.label, d.name, t.simulation_key
             FROM mission_trace AS t JOIN hvac_design AS d USING (design_id) ORDER BY t.label";
@@ -75,7 +75,7 @@ impl Store {
     /// Makes the traces of the database exactly these labels': `rows` are new, those of the labels in `kept` stay.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn put_traces(&mut self, grid: &StoredGrid, rows: &[TraceRow], kept: &[&str]) -> Result<(), StoreError> {
         self.drive(async |c| {
             let mut tx = begin(c).await?;
@@ -110,7 +110,7 @@ impl Store {
     /// The missions that the report shows in time: cold, then hot.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn traces(&mut self) -> Result<Vec<MissionTrace>, StoreError> {
         self.drive_checked(async |c, damage| {
             let sql = "SELECT t.trace_id, t.label, d.name AS design, w.pmv_min, w.pmv_max, t.of_paper
@@ -151,7 +151,7 @@ impl Store {
     /// order of the study.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn trace_windows(&mut self) -> Result<Vec<TraceWindow>, StoreError> {
         let sql =
             "SELECT t.label, r.static_mean_hvac_power_w, r.static_max_abs_pmv, r.mean_hvac_power_w, r.max_abs_pmv_15min

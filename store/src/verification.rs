@@ -48,7 +48,7 @@ impl Store {
     /// Records a verification.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn put_verification(&mut self, verification: &VerificationRow) -> Result<(), StoreError> {
         let violations: u64 = verification.checks.iter().map(|c| c.violations).sum();
         self.drive(async |c| {

@@ -105,7 +105,7 @@ impl Store {
     /// The table `annual_average`, in the order of the study.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn annual(&mut self) -> Result<Vec<AnnualRow>, StoreError> {
         let sql = "SELECT a.* FROM annual_average AS a
             JOIN hvac_design AS d ON d.name = a.design
@@ -129,7 +129,7 @@ impl Store {
     /// The table `monthly_average`, in the order of the study and the year.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn monthly(&mut self) -> Result<Vec<MonthlyRow>, StoreError> {
         let sql = "SELECT m.* FROM monthly_average AS m
             JOIN hvac_design AS d ON d.name = m.design JOIN comfort_window AS w USING (pmv_min, pmv_max)
@@ -148,7 +148,7 @@ impl Store {
     /// The months that have samples, in the order of the year.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn months(&mut self) -> Result<Vec<MonthRow>, StoreError> {
         self.select("SELECT month, sample_count, sample_weight FROM month_weight ORDER BY month", |r| {
             Ok(MonthRow {
@@ -162,7 +162,7 @@ impl Store {
     /// The view `limit_share`, in the order of the study.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn limit_shares(&mut self) -> Result<Vec<LimitShare>, StoreError> {
         let sql = "SELECT s.* FROM limit_share AS s
             JOIN hvac_design AS d ON d.name = s.design JOIN comfort_window AS w USING (pmv_min, pmv_max)
@@ -186,7 +186,7 @@ impl Store {
     /// Segments without a sample, counted by reason.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn exclusion_counts(&mut self) -> Result<Vec<ExclusionCount>, StoreError> {
         let sql = "SELECT reason, count(*) AS segment_count FROM excluded_segment
             GROUP BY reason ORDER BY segment_count DESC, reason";
@@ -196,7 +196,7 @@ impl Store {
     /// Weight of a sample in the annual average; `None` where there is no such sample.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn sample_weight(&mut self, sample_id: i64) -> Result<Option<f64>, StoreError> {
         self.drive(async |c| {
             let sql = "SELECT weight FROM sample WHERE sample_id = ?";
@@ -207,7 +207,7 @@ impl Store {
     /// The stored optimum of a sample, design and window.
     ///
     /// # Errors
-    /// [`StoreError::Statement`].
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn optimum(
         &mut self,
         sample_id: i64,
@@ -230,7 +230,7 @@ impl Store {
     /// The rows of any query as text, for tests that compare the contract's views: NULL is empty.
     ///
     /// # Errors
-    /// [`StoreError::Statement`], also where the query is not valid.
+    /// [`StoreError::Refused`], [`StoreError::Damaged`], also where the query is not valid.
     pub fn query_text(&mut self, sql: &str) -> Result<Vec<Vec<String>>, StoreError> {
         let sql = sql.to_owned();
         self.drive(async |c| {
