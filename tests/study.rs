@@ -260,3 +260,22 @@ fn cli_json_log_lines_are_json() {
     }
     assert_eq!(scratch.expect(0, &["run", "--quiet"]).stderr, "");
 }
+
+#[test]
+fn cli_a_report_in_the_studys_own_folder_leaves_the_folder_where_it_is() {
+    let scratch = Scratch::small(1, "[1.0]", "[]");
+    scratch.edit("study.toml", "report_dir = \"report\"", "report_dir = \".\"");
+    let elsewhere = tempfile::tempdir().unwrap();
+    let database = elsewhere.path().join("study.db");
+    let place = std::fs::File::open(scratch.folder.path()).unwrap();
+    let run = scratch.run(&["run", "--db", database.to_str().unwrap()]);
+    assert_eq!(run.status, 0, "{}", run.stderr);
+    // The folder that was open before is the one that has the report.
+    assert!(scratch.path("report.md").exists() && scratch.path("study.toml").exists());
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::MetadataExt;
+        let now = std::fs::metadata(scratch.folder.path()).unwrap();
+        assert_eq!(place.metadata().unwrap().ino(), now.ino());
+    }
+}

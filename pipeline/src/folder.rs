@@ -10,12 +10,13 @@ use std::path::{Path, PathBuf};
 /// The files of a new folder, by name.
 pub(crate) type Files<'f> = [(&'f str, &'f [u8])];
 
-/// Makes `folder` hold `files`, and of other files those whose name is not among `ours`. `keep` is a file that must stay where
-/// it is.
-pub(crate) fn replace(folder: &Path, files: &Files<'_>, ours: &[&str], keep: &Path) -> Result<()> {
+/// Makes `folder` hold `files`, and of other files those whose name is not among `ours`. What is in `keep` must stay where it
+/// is.
+pub(crate) fn replace(folder: &Path, files: &Files<'_>, ours: &[&str], keep: &[&Path]) -> Result<()> {
     // What a link leads to is replaced, not the link.
     let folder = &fs::canonicalize(folder).or_else(|_| std::path::absolute(folder))?;
-    if fs::canonicalize(keep).is_ok_and(|keep| keep.starts_with(folder)) {
+    let is_inside = |path: &&Path| fs::canonicalize(Path::new(".").join(path)).is_ok_and(|p| p.starts_with(folder));
+    if keep.iter().any(is_inside) {
         return one_by_one(folder, files, ours);
     }
     let places = Places::of(folder)?;
@@ -155,14 +156,14 @@ mod tests {
     fn prop_a_folder_is_replaced_and_strangers_stay() {
         let scratch = tempfile::tempdir().unwrap();
         let (folder, keep) = (scratch.path().join("x/report"), scratch.path().join("db"));
-        replace(&folder, &[("a", b"1"), ("b", b"1")], &OURS, &keep).unwrap();
+        replace(&folder, &[("a", b"1"), ("b", b"1")], &OURS, &[&keep]).unwrap();
         fs::write(folder.join("notes"), "mine").unwrap();
-        replace(&folder, &[("a", b"2"), ("c", b"2")], &OURS, &keep).unwrap();
+        replace(&folder, &[("a", b"2"), ("c", b"2")], &OURS, &[&keep]).unwrap();
         assert_eq!(names(&folder), ["a", "c", "notes"]);
         assert_eq!(names(&scratch.path().join("x")), ["report"]);
         // Where the database lies inside, the folder stays.
         fs::write(folder.join("db"), "").unwrap();
-        replace(&folder, &[("b", b"3")], &OURS, &folder.join("db")).unwrap();
+        replace(&folder, &[("b", b"3")], &OURS, &[&keep, &folder.join("db")]).unwrap();
         assert_eq!(names(&folder), ["b", "db", "notes"]);
     }
 
@@ -177,7 +178,7 @@ mod tests {
         }
         fs::write(new.join("notes"), "mine").unwrap();
         fs::write(old.join("more"), "mine").unwrap();
-        replace(&folder, &[("b", b"1")], &OURS, &scratch.path().join("db")).unwrap();
+        replace(&folder, &[("b", b"1")], &OURS, &[&scratch.path().join("db")]).unwrap();
         assert_eq!(names(&folder), ["b", "more", "notes"]);
         assert_eq!(names(scratch.path()), ["report"]);
     }
@@ -189,7 +190,7 @@ mod tests {
         let [real, link] = ["real", "report"].map(|name| scratch.path().join(name));
         fs::create_dir(&real).unwrap();
         std::os::unix::fs::symlink(&real, &link).unwrap();
-        replace(&link, &[("a", b"1")], &OURS, &scratch.path().join("db")).unwrap();
+        replace(&link, &[("a", b"1")], &OURS, &[&scratch.path().join("db")]).unwrap();
         assert!(link.is_symlink());
         assert_eq!(names(&real), ["a"]);
     }

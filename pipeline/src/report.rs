@@ -100,7 +100,7 @@ fn write(study: &Study, store: &mut Store, progress: &dyn Progress) -> Result<Wr
         lock => Some(lock?),
     };
     let bytes: Vec<(&str, &[u8])> = files.iter().map(|file| (file.name, file.bytes.as_slice())).collect();
-    folder::replace(&study.report_dir, &bytes, &report::FILES, &study.database)
+    folder::replace(&study.report_dir, &bytes, &report::FILES, &[&study.database, &study.base])
         .map_err(|source| PipelineError::Write { path: study.report_dir.clone(), source })?;
     let hashed = |file: &ReportFile| (file.name.to_owned(), blake3::hash(&file.bytes).to_hex().to_string());
     Ok(Written { files: files.iter().map(hashed).collect(), headline: report::headline(&content) })
