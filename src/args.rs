@@ -29,6 +29,10 @@ pub struct Args {
     #[arg(long, global = true)]
     pub rehash: bool,
 
+    /// Let go what came from missions that are no longer where the study says; without it, it is kept, and said.
+    #[arg(long, global = true)]
+    pub forget_missing: bool,
+
     /// How long to wait for another run on the same database.
     #[arg(long, global = true, value_name = "SECONDS", default_value_t = 0)]
     pub wait: u64,

@@ -52,7 +52,8 @@ fn dispatch(args: &Args, console: &Console) -> Result<Ending, Failure> {
         console::stop_on_signal()?;
     }
     let wait = Duration::from_secs(args.wait);
-    let options = &Options { rehash: args.rehash, wait, metrics: args.metrics.clone() };
+    let options =
+        &Options { rehash: args.rehash, forget_missing: args.forget_missing, wait, metrics: args.metrics.clone() };
     match &args.command {
         Command::Demo(demo) => {
             prepare::demo(demo, console)?;
@@ -70,7 +71,7 @@ fn dispatch(args: &Args, console: &Console) -> Result<Ending, Failure> {
         }
         Command::Check(study) => {
             let study = open(study)?;
-            print::check(&study, &pipeline::check(&study)?)
+            print::check(&study, &pipeline::check(&study, console)?)
         }
         Command::Ingest(study) => run(&open(study)?, &[Stage::Ingest], options, console),
         Command::Shade(study) => run(&open(study)?, &[Stage::Shade], options, console),

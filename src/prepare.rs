@@ -1,6 +1,7 @@
 //! What comes before a run: study files and demo data sets.
 
 use anyhow::{Context, anyhow};
+use demo::MissionPlan;
 use pipeline::{Progress, write_whole};
 use std::path::{Path, PathBuf};
 
@@ -12,12 +13,14 @@ use study::template::{self, Template, WeatherKeys};
 
 /// Where a run without a study file makes its demo.
 const DEMO_FOLDER: &str = "busclimate-demo";
+/// The bus of the paper.
+const PAPER_BUS: u32 = 183;
 /// Format of the synthetic weather.
 const SYNTHETIC: WeatherKeys = WeatherKeys::MeteoSwissOgd;
 
 pub fn init(dir: &Path) -> Result<(), Failure> {
     let name = dir.file_name().map_or_else(|| "study".to_owned(), |n| n.to_string_lossy().into_owned());
-    let text = template::render(&Template { name: &name, note: None, buses: &[], weather: SYNTHETIC });
+    let text = template::render(&Template { name: &name, note: None, buses: &[PAPER_BUS], weather: SYNTHETIC });
     let path = dir.join(STUDY_FILE);
     if path.exists() {
         return Err(Failure::Usage(anyhow!("{} is there already; it is left as it is", path.display())));
@@ -49,7 +52,7 @@ pub fn demo(args: &DemoArgs, console: &Console) -> Result<(), Failure> {
                 .map_err(Failure::Inputs)?;
             let plans =
                 demo::read_meta_data(file).with_context(|| path.display().to_string()).map_err(Failure::Inputs)?;
-            let wanted = if args.buses.is_empty() { &[183][..] } else { &args.buses };
+            let wanted = if args.buses.is_empty() { &[PAPER_BUS][..] } else { &args.buses };
             plans.into_iter().filter(|p| wanted.contains(&p.bus)).collect()
         }
     };
@@ -59,15 +62,22 @@ pub fn demo(args: &DemoArgs, console: &Console) -> Result<(), Failure> {
 
     let real = args.weather.as_deref().map(real_weather).transpose()?;
     let weather = real.as_ref().map(|w| (w.name.as_str(), w.bytes.as_slice()));
+    let note = "Synthetic data, made by busclimate: it shows how the program works and says nothing about Zürich.";
+    let format = real.as_ref().map_or(SYNTHETIC, |w| w.format);
+    let study = template::render(&Template { name: "demo", note: Some(note), buses: &buses, weather: format });
+    let path = args.dir.join(STUDY_FILE);
+    let study = format!("{study}\n{}\n", origin(args, &plans, weather));
+    if path.exists() && std::fs::read(&path).ok().as_deref() != Some(study.as_bytes()) {
+        return Err(Failure::Usage(anyhow!(
+            "{} is there already, and not one of a demo with these arguments; it is left as it is: name another folder",
+            path.display()
+        )));
+    }
     console.begin("demo missions", plans.len() as u64);
     let summary = demo::write(&args.dir, args.seed, &plans, weather, &|_, _| console.advance(1))
         .map_err(|e| Failure::Inputs(e.into()))?;
     console.end();
-    let note = "Synthetic data, made by busclimate: it shows how the program works and says nothing about Zürich.";
-    let format = real.as_ref().map_or(SYNTHETIC, |w| w.format);
-    let study = template::render(&Template { name: "demo", note: Some(note), buses: &buses, weather: format });
     // Written last: a study file that is there has all its data.
-    let path = args.dir.join(STUDY_FILE);
     write_whole(&path, study.as_bytes())?;
     say(format_args!(
         "{} missions, {} rows, {} MB of synthetic telemetry; study file {}",
@@ -76,6 +86,17 @@ pub fn demo(args: &DemoArgs, console: &Console) -> Result<(), Failure> {
         summary.bytes / 1_000_000,
         path.display()
     ))
+}
+
+/// What a demo is made of, as the last line of its study file.
+fn origin(args: &DemoArgs, plans: &[MissionPlan], weather: Option<(&str, &[u8])>) -> String {
+    let span = match (plans.first(), plans.last()) {
+        (Some(first), Some(last)) => format!(", {} to {}", first.name(), last.name()),
+        _ => String::new(),
+    };
+    let weather =
+        weather.map_or_else(|| "synthetic".to_owned(), |(name, bytes)| format!("{name:?}, {} bytes", bytes.len()));
+    format!("# Made by `busclimate demo`: {} missions{span}; seed {}; weather: {weather}", plans.len(), args.seed)
 }
 
 /// A file of real weather for a demo, and how a study file describes it.

@@ -47,7 +47,7 @@ pub fn check(study: &Study, check: &Check) -> Result<Ending, Failure> {
         study.grid.points()
     ))?;
     say(format_args!(
-        "{} missions, {} rows, at most {} samples and {} points",
+        "{} missions, {} rows, {} samples and {} points",
         check.missions, check.rows, check.samples, check.points
     ))?;
     say(format_args!(
@@ -57,17 +57,25 @@ pub fn check(study: &Study, check: &Check) -> Result<Ending, Failure> {
         check.simulated_s / 1e6
     ))?;
     say(format_args!("about {:.0} s on two cores, {:.0} MB of database", check.seconds, check.database_bytes / 1e6))?;
-    for record in &check.refused {
-        for finding in &record.findings {
-            say(format_args!("refused: {}: {finding}", record.path))?;
+    for (reason, count) in &check.excluded {
+        say(format_args!("excluded: {count} segments: {reason}"))?;
+    }
+    for (what, records) in [("refused", &check.refused), ("note", &check.used)] {
+        for record in records {
+            for finding in &record.findings {
+                let times = if finding.count > 1 { format!(" ({} times)", finding.count) } else { String::new() };
+                say(format_args!("{what}: {}: {finding}{times}", record.path))?;
+            }
         }
     }
-    for record in &check.weather {
-        for finding in &record.findings {
-            say(format_args!("note: {}: {finding} ({})", record.path, finding.count))?;
-        }
+    for error in &check.errors {
+        say(format_args!("error: {error}"))?;
     }
-    Ok(Ending::of(check.refused.is_empty()))
+    match check.errors.as_slice() {
+        [] => Ok(Ending::of(check.refused.is_empty() && check.used.iter().all(|record| record.replaced().is_none()))),
+        [one] => Err(Failure::Inputs(anyhow!("{one}"))),
+        [first, ..] => Err(Failure::Inputs(anyhow!("{} errors, the first: {first}", check.errors.len()))),
+    }
 }
 
 /// What a run would do, stage by stage.

@@ -4,7 +4,7 @@
 
 mod common;
 
-use common::Scratch;
+use common::{CONTENT, Scratch};
 use std::io::Write;
 
 const SAMPLES: &str = "SELECT sample_id, passengers, door_open_fraction, ambient_temperature_c FROM sample";
@@ -155,4 +155,53 @@ fn cli_missions_are_found_wherever_people_keep_them() {
     assert!(run.stderr.contains("refused: ztbus/more.tar: such an archive"), "{}", run.stderr);
     assert!(!cfg!(unix) || run.stderr.contains("refused: ztbus/link.csv: the link leads nowhere"), "{}", run.stderr);
     assert_eq!(meant, scratch.exact(SAMPLES).unwrap());
+}
+
+#[test]
+fn cli_missions_that_are_gone_are_said_and_their_results_kept() {
+    let scratch = Scratch::small(4, "[1.0]", "[1.0]");
+    scratch.expect(0, &["run"]);
+    let (results, report) = (scratch.exact(CONTENT[0]).unwrap(), scratch.report());
+    let averages = "SELECT * FROM annual_average";
+    let average = scratch.exact(averages).unwrap();
+    let names = scratch.missions();
+    std::fs::create_dir(scratch.path("away")).unwrap();
+    for name in &names[1..3] {
+        std::fs::rename(scratch.path("ztbus").join(name), scratch.path("away").join(name)).unwrap();
+    }
+    let run = scratch.expect(1, &["run"]);
+    let said = format!("WARN 2 missions are no longer there, the first: ztbus/{}", names[1]);
+    assert!(run.stderr.contains(&said) && run.stderr.contains("--forget-missing"), "{}", run.stderr);
+    assert!(run.stderr.contains("4 missions: 0 read now, 0 no longer there, 2 missing and kept"), "{}", run.stderr);
+    assert!(results == scratch.exact(CONTENT[0]).unwrap() && average == scratch.exact(averages).unwrap());
+    assert!(scratch.read("report/report.md").contains("2 missions were not there when they were last looked for"));
+    // Every night says it again, and computes nothing.
+    let run = scratch.expect(1, &["run"]);
+    assert!(run.stderr.contains(&said) && run.stderr.contains(" 0 points computed now"), "{}", run.stderr);
+    // A share that is not there at all is an error that takes nothing away.
+    std::fs::rename(scratch.path("ztbus"), scratch.path("share")).unwrap();
+    scratch.expect(3, &["run"]);
+    std::fs::create_dir(scratch.path("ztbus")).unwrap();
+    scratch.expect(3, &["run"]);
+    assert!(average == scratch.exact(averages).unwrap());
+    std::fs::remove_dir(scratch.path("ztbus")).unwrap();
+    std::fs::rename(scratch.path("share"), scratch.path("ztbus")).unwrap();
+    // Back, all is as it was.
+    for name in &names[1..3] {
+        std::fs::rename(scratch.path("away").join(name), scratch.path("ztbus").join(name)).unwrap();
+    }
+    let run = scratch.expect(0, &["run"]);
+    assert!(run.stderr.contains("4 missions: 0 read now, 0 no longer there"), "{}", run.stderr);
+    assert!(results == scratch.exact(CONTENT[0]).unwrap() && report == scratch.report());
+    // Told to, it forgets; so it does with another bus's, and with one whose time another mission has.
+    std::fs::rename(scratch.path("ztbus").join(&names[1]), scratch.path("away").join(&names[1])).unwrap();
+    scratch.expect(1, &["run"]);
+    let run = scratch.expect(0, &["run", "--forget-missing"]);
+    assert!(run.stderr.contains("3 missions: 0 read now, 1 no longer there"), "{}", run.stderr);
+    assert_eq!(scratch.query("SELECT count(DISTINCT mission) FROM sample"), [["3"]]);
+    let shorter = names[2].replace(&names[2][names[2].len() - 6..], "00.csv");
+    std::fs::rename(scratch.path("ztbus").join(&names[2]), scratch.path("ztbus").join(&shorter)).unwrap();
+    let run = scratch.run(&["run"]);
+    assert!(shorter == names[2] || run.stderr.contains("1 read now, 1 no longer there"), "{}", run.stderr);
+    assert_eq!(scratch.query("SELECT count(DISTINCT mission) FROM sample"), [["3"]]);
 }

@@ -143,7 +143,7 @@ fn cli_a_plan_says_what_a_run_would_do_and_why() {
     scratch.edit("study.toml", "time_zone = \"Europe/Zurich\"", "time_zone = \"Asia/Tokyo\"");
     let plan = scratch.expect(0, &["status", "--why"]).stdout;
     for line in [
-        &format!("1 mission is no longer there: ztbus/{}", names[1]),
+        &format!("1 mission is missing, and kept: ztbus/{}", names[1]),
         &format!("1 mission is to be hashed, for size, time or inode are not as they were: ztbus/{}", names[0]),
         "location.time_zone was Europe/Zurich and is Asia/Tokyo",
     ] {

@@ -114,7 +114,7 @@ fn cli_late_and_half_copied_data_are_news() {
     let run = scratch.expect(1, &["run"]);
     assert!(run.stderr.contains("the newest mission may be half copied: ztbus/"), "{}", run.stderr);
     std::fs::remove_file(scratch.path(&newest)).unwrap();
-    let run = scratch.expect(0, &["run"]);
+    let run = scratch.expect(0, &["run", "--forget-missing"]);
     assert!(run.stderr.contains("WARN missions are no longer there") && run.stderr.contains(&newest), "{}", run.stderr);
     scratch.edit("study.toml", "expect_newest_within_hours = 1e6", "expect_newest_within_hours = -1");
     let run = scratch.expect(2, &["run"]);

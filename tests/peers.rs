@@ -1,8 +1,6 @@
 //! Other people's programs beside ours. Each test runs a script of `tests/peers/` and is skipped, with a line that says so,
 //! where Python or the packages of `tests/peers/requirements.txt` are absent.
 
-#![expect(clippy::print_stdout, reason = "a test says why it is skipped, and how far apart the programs are")]
-
 use cabin::{
     ComfortWindow, Disturbances, Optimum, Outcome, PassengerViews, PmvModel, SolarGains, Vehicle, kelvin,
     place_passengers, predicted_percentage_dissatisfied,
@@ -11,26 +9,8 @@ use chrono::{DateTime, Datelike};
 use ingest::irradiance::{closure, erbs};
 use solve::nlp::{DoorLaw, Effort, NlpSolver, VoteForm};
 use solve::{Grid, SampleSolver};
-use std::process::Command;
 use std::time::Instant;
-use testing::paper_designs;
-
-/// The lines that a script prints, or `None` where it cannot run.
-fn peer(script: &str, package: &str, arguments: &[String]) -> Option<Vec<Vec<String>>> {
-    let python = std::env::var("BUSCLIMATE_PYTHON").unwrap_or_else(|_| "python3".to_owned());
-    let there = Command::new(&python).args(["-c", &format!("import {package}")]).output();
-    if !there.is_ok_and(|o| o.status.success()) {
-        println!(
-            "skipped: {python} has no {package}; pip install -r tests/peers/requirements.txt, or set BUSCLIMATE_PYTHON"
-        );
-        return None;
-    }
-    let path = format!("{}/tests/peers/{script}", env!("CARGO_MANIFEST_DIR"));
-    let output = Command::new(&python).arg(path).args(arguments).output().expect("python has just run");
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let text = String::from_utf8(output.stdout).expect("the scripts print ASCII");
-    Some(text.lines().map(|l| l.split(',').map(str::to_owned).collect()).collect())
-}
+use testing::{paper_designs, peer};
 
 fn numbers(row: &[String]) -> Vec<f64> {
     row.iter().map(|c| c.parse().unwrap_or_else(|_| panic!("{c:?} is no number"))).collect()

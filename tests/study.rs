@@ -87,13 +87,13 @@ fn prop_a_change_reaches_what_depends_on_it_and_no_more() {
     scratch.expect(0, &["run"]);
     let points: usize = scratch.query("SELECT count(*) FROM optimum")[0][0].parse().unwrap();
 
-    // A withdrawn mission takes its samples along; put back, it alone is computed.
+    // A mission that is to be forgotten takes its samples along; put back, it alone is computed.
     let name = scratch.missions().remove(3);
     let of_mission = format!("SELECT count(*) FROM sample WHERE source_path = 'ztbus/{name}'");
     let samples: usize = scratch.query(&of_mission)[0][0].parse().unwrap();
     let before = scratch.report();
     std::fs::rename(scratch.path("ztbus").join(&name), scratch.path("aside.csv")).unwrap();
-    let without = scratch.expect(0, &["run"]);
+    let without = scratch.expect(0, &["run", "--forget-missing"]);
     assert!(without.stderr.contains("1 no longer there") && without.stderr.contains(" 0 points computed now"));
     assert_eq!(scratch.query("SELECT count(*) FROM optimum")[0][0], (points - samples * 20).to_string());
     assert!(before != scratch.report());
@@ -278,4 +278,47 @@ fn cli_a_report_in_the_studys_own_folder_leaves_the_folder_where_it_is() {
         let now = std::fs::metadata(scratch.folder.path()).unwrap();
         assert_eq!(place.metadata().unwrap().ino(), now.ino());
     }
+}
+
+#[test]
+fn cli_a_demo_leaves_other_studies_alone_and_init_names_its_bus() {
+    let scratch = Scratch::demo(1);
+    let (study, missions) = (scratch.read("study.toml"), scratch.missions());
+    scratch.expect(0, &["demo", ".", "--missions", "1"]);
+    assert_eq!((scratch.read("study.toml"), scratch.missions()), (study, missions.clone()));
+    for arguments in [["demo", ".", "--missions", "2"], ["demo", ".", "--seed", "2"]] {
+        let run = scratch.expect(2, &arguments);
+        assert!(run.stderr.contains("is there already, and not one of a demo with these arguments"), "{}", run.stderr);
+    }
+    scratch.edit("study.toml", "segment_s = 3600", "segment_s = 1800");
+    scratch.expect(2, &["demo", ".", "--missions", "1"]);
+    assert_eq!(scratch.missions(), missions);
+    scratch.expect(0, &["init", "mine"]);
+    assert!(scratch.read("mine/study.toml").contains("buses = [183]"));
+}
+
+#[test]
+fn cli_check_says_all_that_is_wrong_at_once() {
+    let scratch = Scratch::small(3, "[1.0]", "[]");
+    let names = scratch.missions();
+    let text = scratch.read(&format!("ztbus/{}", names[0]));
+    scratch.write(&format!("ztbus/{}", names[0]), text.replacen("status_doorIsOpen", "doors", 1));
+    let text = scratch.read(&format!("ztbus/{}", names[1]));
+    scratch.write(&format!("ztbus/{}", names[1]), text.replace(",1,1,1,", ",ajar,1,1,"));
+    let check = scratch.run(&["check"]);
+    assert_eq!(check.status, 1, "{}", check.stderr);
+    assert!(check.stdout.contains("\n1 missions, ") || check.stdout.contains("\n2 missions, "), "{}", check.stdout);
+    for said in [&names[0], &names[1]] {
+        assert!(check.stdout.contains(&format!(": ztbus/{said}: line ")), "{}", check.stdout);
+    }
+    assert!(check.stdout.contains("column status_doorIsOpen: the column is missing"), "{}", check.stdout);
+    scratch.edit("study.toml", "path = \"shadow.csv\"", "path = \"shade.csv\"");
+    scratch.edit("study.toml", "path = \"weather\"", "path = \"wether\"");
+    let check = scratch.run(&["check"]);
+    assert_eq!(check.status, 3);
+    for said in ["error: ", "wether: there is no such file or folder", "shade.csv: cannot be read", &names[0]] {
+        assert!(check.stdout.contains(said), "{said}: {}", check.stdout);
+    }
+    assert!(check.stderr.contains("2 errors, the first: "), "{}", check.stderr);
+    assert!(!scratch.path("study.db").exists());
 }

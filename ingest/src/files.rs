@@ -115,8 +115,7 @@ impl FileReader {
     /// A finding that says why it cannot be read.
     pub(crate) fn read_gzip(&mut self, path: &Path) -> Result<Content, Finding> {
         let (file, metadata) = open_regular(path)?;
-        let unpacked = MultiGzDecoder::new(BufReader::new(file));
-        let content = limited(unpacked, 0, std::mem::take(&mut self.buffer))?;
+        let content = limited(unpacked(file), 0, std::mem::take(&mut self.buffer))?;
         Ok(Content { stamp: FileStamp::settled(&metadata), ..content })
     }
 
@@ -146,13 +145,25 @@ impl FileReader {
 }
 
 /// Opens a file; a pipe would be waited for without end.
-fn open_regular(path: &Path) -> Result<(File, Metadata), Finding> {
+pub(crate) fn open_regular(path: &Path) -> Result<(File, Metadata), Finding> {
     if std::fs::metadata(path).is_ok_and(|m| !m.is_file()) {
         return Err(Finding::whole(FindingKind::Unreadable, "not a regular file; give a file"));
     }
     let file = File::open(path).map_err(|e| unreadable(&e))?;
     let metadata = file.metadata().map_err(|e| unreadable(&e))?;
     Ok((file, metadata))
+}
+
+/// What a file that is compressed by gzip holds.
+pub(crate) fn unpacked(file: File) -> impl Read {
+    MultiGzDecoder::new(BufReader::new(file))
+}
+
+/// The first bytes of a file.
+pub(crate) fn head_of(source: impl Read, most: usize) -> Result<Vec<u8>, Finding> {
+    let mut bytes = Vec::new();
+    source.take(most as u64).read_to_end(&mut bytes).map_err(|e| unreadable(&e))?;
+    Ok(bytes)
 }
 
 fn limited(source: impl Read, size: u64, mut bytes: Vec<u8>) -> Result<Content, Finding> {
@@ -172,7 +183,7 @@ fn limited(source: impl Read, size: u64, mut bytes: Vec<u8>) -> Result<Content, 
     Ok(Content::new(bytes))
 }
 
-fn unreadable(error: &dyn std::error::Error) -> Finding {
+pub(crate) fn unreadable(error: &dyn std::error::Error) -> Finding {
     Finding::whole(FindingKind::Unreadable, format!("cannot be read: {error}; check the file and its permissions"))
 }
 

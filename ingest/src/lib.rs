@@ -17,6 +17,7 @@ mod quality;
 pub mod sample;
 mod segments;
 mod telemetry;
+mod walk;
 pub mod weather;
 
 pub use files::{Content, FileReader, FileStamp, check_lines, write_whole};

@@ -48,6 +48,20 @@ pub enum FindingKind {
     WrongDelimiter,
     /// A needed column is missing.
     MissingColumn,
+    /// A file of another format, or of none that is known.
+    OtherFormat,
+    /// Stamps that contradict the layout, or the sun.
+    WrongStamps,
+    /// Stamps close to the interval that they mean.
+    MovedStamp,
+    /// Stamps of another clock than the file says.
+    OtherClock,
+    /// A file of another place than the study's.
+    OtherPlace,
+    /// Months of several years that make one reference year.
+    ReferenceYear,
+    /// A mission that was not there when it was last looked for; what came from it is kept.
+    MissingFile,
     /// The file's name is not one of a mission.
     NotAMission,
     /// An archive entry whose path leaves the archive.
@@ -78,12 +92,19 @@ pub enum FindingKind {
 
 impl FindingKind {
     /// All of them.
-    pub const ALL: [Self; 18] = [
+    pub const ALL: [Self; 25] = [
         Self::Unreadable,
         Self::Empty,
         Self::WrongEncoding,
         Self::WrongDelimiter,
         Self::MissingColumn,
+        Self::OtherFormat,
+        Self::WrongStamps,
+        Self::MovedStamp,
+        Self::OtherClock,
+        Self::OtherPlace,
+        Self::ReferenceYear,
+        Self::MissingFile,
         Self::NotAMission,
         Self::UnsafePath,
         Self::Overlap,
@@ -114,6 +135,13 @@ impl FindingKind {
             Self::WrongEncoding => "wrong_encoding",
             Self::WrongDelimiter => "wrong_delimiter",
             Self::MissingColumn => "missing_column",
+            Self::OtherFormat => "other_format",
+            Self::WrongStamps => "wrong_stamps",
+            Self::MovedStamp => "moved_stamp",
+            Self::OtherClock => "other_clock",
+            Self::OtherPlace => "other_place",
+            Self::ReferenceYear => "reference_year",
+            Self::MissingFile => "missing_file",
             Self::NotAMission => "not_a_mission",
             Self::UnsafePath => "unsafe_path",
             Self::Overlap => "overlap",
@@ -225,6 +253,12 @@ impl FileRecord {
         };
         let is_used_mission = self.accepted && self.kind == FileKind::Mission;
         self.findings.iter().filter(|_| is_used_mission).find(replaced)
+    }
+
+    /// Whether the file was not there when it was last looked for.
+    #[must_use]
+    pub fn is_missing(&self) -> bool {
+        self.findings.iter().any(|finding| finding.kind == FindingKind::MissingFile)
     }
 
     /// The same record with the stamp of its file.

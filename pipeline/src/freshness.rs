@@ -86,5 +86,6 @@ pub(crate) fn simulate_key(study: &Study, inputs: &Inputs, store: &mut Store) ->
 /// Key of the report of a study: all that the database holds of it, and the program.
 pub(crate) fn report_key(study: &Study, inputs: &Inputs, store: &mut Store) -> Result<String, PipelineError> {
     let simulations = simulate_key(study, inputs, store)?;
-    Ok(keys::hash(&[&study.hash, &simulations, &input_hash(store)?, PROGRAM_VERSION]))
+    let missing: Vec<String> = store.missing_files()?.into_iter().collect();
+    Ok(keys::hash(&[&study.hash, &simulations, &input_hash(store)?, &missing.join(" "), PROGRAM_VERSION]))
 }

@@ -10,10 +10,15 @@ use crate::before::{Before, Standing};
 use crate::budget::Budget;
 use crate::in_order::in_order;
 use crate::inputs::{Inputs, refusal_key};
+use crate::missing::Gone;
 use crate::{PipelineError, Progress, Work, freshness};
 
 /// Missions that are read at a time, per thread: while one is hashed and taken in, polars parses another.
 const READERS_A_THREAD: usize = 2;
+
+/// What is recorded of a mission that is not there.
+const MISSING: &str =
+    "not there when it was last looked for; what came from it is kept: bring it back, or run with --forget-missing";
 
 /// What a thread has found out about a mission.
 struct Read {
@@ -116,17 +121,21 @@ pub(crate) fn ingest(
         },
     )?;
     progress.end();
-    let mut paths: Vec<String> = found.missions.iter().map(|m| m.path.clone()).collect();
-    for record in overlapping.into_values().chain(found.refused) {
-        paths.push(record.path.clone());
-        store.put_file(&record, &refusal_key(&record))?;
+    let paths = found.missions.len() + found.refused.len();
+    for record in overlapping.values().chain(&found.refused) {
+        store.put_file(record, &refusal_key(record))?;
     }
-    if let Some(first) = store.known_files(FileKind::Mission)?.keys().find(|path| !paths.contains(path)) {
+    let gone = Gone::of(study, &found, &store.known_files(FileKind::Mission)?);
+    if let Some(first) = gone.forgotten.first() {
         progress.warn(&format!("missions are no longer there, and what came from them goes; the first: {first}"));
     }
-    let forgotten = store.keep_files(FileKind::Mission, &paths)?;
-    let message = format!("{} missions: {read_now} read now, {forgotten} no longer there", paths.len());
-    Ok(Work { computed: read_now, withdrawn: forgotten, total: paths.len() as u64, message })
+    store.forget_files(&gone.forgotten)?;
+    store.put_missing(&gone.missing, MISSING)?;
+    let (forgotten, missing) = (gone.forgotten.len() as u64, gone.missing.len());
+    let total = (paths + missing) as u64;
+    let kept = if missing == 0 { String::new() } else { format!(", {missing} missing and kept") };
+    let message = format!("{total} missions: {read_now} read now, {forgotten} no longer there{kept}");
+    Ok(Work { computed: read_now, withdrawn: forgotten, total, message })
 }
 
 /// Says that samples are to be joined anew, where `ingest` runs alone.

@@ -72,16 +72,18 @@ impl<'s> Inputs<'s> {
 
     fn unchanged(&self, store: &mut Store) -> Result<Option<BTreeMap<String, String>>, PipelineError> {
         let s = self.study;
-        let mut files = weather::discover(&s.base, &s.weather_path, &s.weather.format)?;
-        files.push((s.shadow_path.clone(), s.base.join(&s.shadow_path)));
+        let found = weather::discover(&s.base, &s.weather_path, &s.weather.format)?;
+        let mut files: Vec<_> = found.files.iter().map(|file| (file.path().to_owned(), file.stamp())).collect();
+        files.push((s.shadow_path.clone(), FileStamp::of(&s.base.join(&s.shadow_path))));
         let mut known = store.known_files(FileKind::Weather)?;
         known.append(&mut store.known_files(FileKind::Shadow)?);
-        let key = |(label, path): (String, &std::path::Path)| {
+        let key = |(label, stamp): (String, Option<FileStamp>)| {
             let file = known.get(&label)?;
-            let same = file.stamp.is_some() && file.stamp == FileStamp::of(path);
+            let same = file.stamp.is_some() && file.stamp == stamp;
             same.then(|| (label, keys::surroundings_key(s, &file.blake3)))
         };
-        Ok(files.iter().map(|(label, path)| key((label.clone(), path.as_path()))).collect())
+        let refused = found.refused.iter().map(|record| Some((record.path.clone(), refusal_key(record))));
+        Ok(files.into_iter().map(key).chain(refused).collect())
     }
 
     /// Records how files look now that were read only to find that their content is as it was.

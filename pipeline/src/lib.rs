@@ -19,6 +19,7 @@ mod ingest;
 mod inputs;
 mod lock;
 mod metrics;
+mod missing;
 mod missions;
 mod news;
 mod open;

@@ -1,5 +1,5 @@
-//! What a job's owner wants to hear of the data, though nothing is wrong with the results: late or half-copied missions, late
-//! weather.
+//! What a job's owner wants to hear of the data, though nothing is wrong with the results: missions that are gone, late or
+//! half-copied missions, late weather.
 
 use chrono::{DateTime, Utc};
 use ingest::{FileKind, FindingKind};
@@ -11,6 +11,13 @@ use crate::PipelineError;
 /// What is not as the study file expects it; nothing where it expects nothing.
 pub(crate) fn news(study: &Study, store: &mut Store, now: DateTime<Utc>) -> Result<Vec<String>, PipelineError> {
     let mut news = Vec::new();
+    let missing = store.missing_files()?;
+    if let Some(first) = missing.first() {
+        news.push(format!(
+            "{} missions are no longer there, the first: {first}; what came from them is kept until a run with --forget-missing",
+            missing.len()
+        ));
+    }
     for (kind, expected_h) in
         [(FileKind::Mission, study.expect_missions_within_h), (FileKind::Weather, study.expect_weather_within_h)]
     {

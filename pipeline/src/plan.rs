@@ -11,6 +11,7 @@ use study::{Study, keys};
 use crate::basis::SimulationBasis;
 use crate::before::{Before, Standing};
 use crate::check::{POINTS_A_SECOND, ROWS_A_SECOND, SIMULATED_A_SECOND};
+use crate::missing::Gone;
 use crate::missions::{WeatherAndShade, missions};
 use crate::{Inputs, PipelineError, Stage, freshness, open, report};
 
@@ -103,12 +104,18 @@ impl Planning<'_> {
                 self.new_samples += samples.unsigned_abs();
             }
         }
-        let there: BTreeSet<&String> =
-            found.missions.iter().map(|m| &m.path).chain(found.refused.iter().map(|f| &f.path)).collect();
-        let names: BTreeSet<&str> = found.missions.iter().map(|m| m.name.as_str()).collect();
-        let is_gone = |path: &&String| !there.contains(path) && !names.contains(mission::mission_name(path));
-        for path in known.keys().filter(is_gone) {
+        let gone = Gone::of(study, &found, &known);
+        let missing_before = self.store.missing_files()?;
+        for path in &gone.forgotten {
             reasons.entry("no longer there").or_default().push(path);
+        }
+        for path in gone.missing.difference(&missing_before) {
+            reasons.entry("missing, and kept").or_default().push(path);
+        }
+        for path in
+            missing_before.iter().filter(|path| !gone.missing.contains(*path) && !gone.forgotten.contains(*path))
+        {
+            reasons.entry("there again").or_default().push(path);
         }
         let why = reasons.iter().map(|(reason, paths)| match paths.as_slice() {
             [one] => format!("1 mission is {reason}: {one}"),

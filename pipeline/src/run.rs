@@ -49,6 +49,8 @@ impl Stage {
 pub struct Options {
     /// Read every input again, also those that look as they did.
     pub rehash: bool,
+    /// Let go what came from missions that are no longer there, whatever the study says.
+    pub forget_missing: bool,
     /// How long to wait for another run on the same database.
     pub wait: Duration,
     /// A file for what the run came to as metrics, in the text format of OpenMetrics.
@@ -83,7 +85,9 @@ pub fn run(study: &Study, stages: &[Stage], options: &Options, progress: &dyn Pr
         Some(RunLock::take(&study.database, options.wait, progress)?)
     };
     let mut store = if only_report { open::for_reading(study)? } else { open::for_writing(study)? };
-    let study = &as_solved(study, stages, &mut store)?;
+    let mut study = as_solved(study, stages, &mut store)?;
+    study.forget_missing |= options.forget_missing;
+    let study = &study;
     let inputs = Inputs::new(study, options.rehash);
     check_stored(&mut store, options.rehash, progress)?;
     let run_id = if only_report { None } else { Some(store.start_run(now(), PROGRAM_VERSION, &study.hash)?) };

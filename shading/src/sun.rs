@@ -45,6 +45,18 @@ impl Site {
         Ok(Self { latitude_deg, longitude_deg })
     }
 
+    /// Latitude in degrees, north positive.
+    #[must_use]
+    pub fn latitude_deg(&self) -> f64 {
+        self.latitude_deg
+    }
+
+    /// Longitude in degrees, east positive.
+    #[must_use]
+    pub fn longitude_deg(&self) -> f64 {
+        self.longitude_deg
+    }
+
     /// The sun's position at an instant, by the PSA algorithm (Blanco-Muriel et al. 2001,
     /// doi 10.1016/S0038-092X(00)00156-0) of the `spa` crate. Its error against NREL's SPA is measured in the tests of
     /// this crate and stays below 0.05° above the horizon between 1990 and 2050.

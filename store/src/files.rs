@@ -4,7 +4,7 @@ use chrono::{DateTime, Utc};
 use ingest::{FileKind, FileRecord, FileStamp, Finding, FindingKind};
 use sqlx::Row;
 use sqlx::sqlite::{SqliteConnection, SqliteRow};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::checks::{commit, whole};
 use crate::row::{Insert, begin, count, optional_time, time, time_text, word};
@@ -17,6 +17,8 @@ pub struct KnownFile {
     pub reading_key: String,
     /// BLAKE3 of its content; empty where it was never read.
     pub blake3: String,
+    /// Whether it is used.
+    pub accepted: bool,
     /// How it looked then.
     pub stamp: Option<FileStamp>,
 }
@@ -28,7 +30,7 @@ impl Store {
     /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn known_files(&mut self, kind: FileKind) -> Result<BTreeMap<String, KnownFile>, StoreError> {
         self.drive_checked(async |c, damage| {
-            let sql = "SELECT f.*, s.bytes AS stamp_bytes, s.modified_ns, s.inode
+            let sql = "SELECT f.*, f.outcome = 'accepted' AS accepted, s.bytes AS stamp_bytes, s.modified_ns, s.inode
                 FROM source_file AS f LEFT JOIN file_stamp AS s USING (source_file_id)
                 WHERE f.kind = ? ORDER BY f.path";
             let rows = sqlx::query(sql).bind(kind.name()).fetch_all(c).await?;
@@ -36,7 +38,8 @@ impl Store {
             rows.iter()
                 .map(|r| {
                     let (reading_key, blake3) = (r.try_get("reading_key")?, r.try_get("blake3")?);
-                    Ok((r.try_get("path")?, KnownFile { reading_key, blake3, stamp: stamp(r)? }))
+                    let known = KnownFile { reading_key, blake3, accepted: r.try_get("accepted")?, stamp: stamp(r)? };
+                    Ok((r.try_get("path")?, known))
                 })
                 .collect()
         })
@@ -80,17 +83,58 @@ impl Store {
         })
     }
 
-    /// Forgets the files of a kind whose path is not among `paths`, with all that came from them.
+    /// Forgets files, with all that came from them.
     ///
     /// # Errors
     /// [`StoreError::Refused`], [`StoreError::Damaged`].
-    pub fn keep_files(&mut self, kind: FileKind, paths: &[String]) -> Result<u64, StoreError> {
-        let known = self.known_files(kind)?;
+    pub fn forget_files(&mut self, paths: &BTreeSet<String>) -> Result<(), StoreError> {
         self.drive(async |c| {
             let mut tx = begin(c).await?;
-            let forgotten = forget_others(&mut tx, known.keys(), paths).await?;
-            commit(tx).await?;
-            Ok(forgotten)
+            for path in paths {
+                sqlx::query("DELETE FROM source_file WHERE path = ?").bind(path).execute(&mut *tx).await?;
+            }
+            commit(tx).await
+        })
+    }
+
+    /// The files that are recorded as missing.
+    ///
+    /// # Errors
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
+    pub fn missing_files(&mut self) -> Result<BTreeSet<String>, StoreError> {
+        self.drive(async |c| {
+            let sql = "SELECT path FROM source_file JOIN data_quality AS q USING (source_file_id) WHERE q.kind = ?";
+            let rows = sqlx::query(sql).bind(FindingKind::MissingFile.name()).fetch_all(c).await?;
+            rows.iter().map(|r| Ok(r.try_get("path")?)).collect()
+        })
+    }
+
+    /// Records which files are missing, and that others no longer are.
+    ///
+    /// # Errors
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
+    pub fn put_missing(&mut self, paths: &BTreeSet<String>, message: &str) -> Result<(), StoreError> {
+        if self.missing_files()? == *paths {
+            return Ok(());
+        }
+        let kind = FindingKind::MissingFile.name();
+        self.drive(async |c| {
+            let mut tx = begin(c).await?;
+            sqlx::query("DELETE FROM data_quality WHERE kind = ?").bind(kind).execute(&mut *tx).await?;
+            for path in paths {
+                let sql = "SELECT f.source_file_id, 1 + coalesce(max(position), -1) AS position
+                    FROM source_file AS f LEFT JOIN data_quality USING (source_file_id) WHERE path = ? GROUP BY 1";
+                let Some(row) = sqlx::query(sql).bind(path).fetch_optional(&mut *tx).await? else { continue };
+                Insert::into("data_quality")
+                    .set("source_file_id", row.try_get::<i64, _>("source_file_id")?)?
+                    .set("position", row.try_get::<i64, _>("position")?)?
+                    .set("kind", kind)?
+                    .set("count", 1_i64)?
+                    .set("message", message)?
+                    .execute(&mut tx)
+                    .await?;
+            }
+            commit(tx).await
         })
     }
 

@@ -12,6 +12,7 @@ use ingest::sample::Sample;
 use ingest::{ExcludedSegment, FileKind, FileRecord, FileStamp, Finding, FindingKind};
 use proptest::prelude::*;
 use solve::Method;
+use std::collections::BTreeSet;
 use store::{Counts, DesignRow, MissingOptima, NewOptimum, RecordedStage, RunEnd, StageRecord, Store, StoreError};
 use tempfile::TempDir;
 
@@ -228,7 +229,15 @@ fn prop_a_changed_file_takes_its_samples_and_optima_along_and_an_unchanged_one_d
     assert_eq!(points(&mut store), "4");
     // Its two segments wait for weather again, beside three of the other mission.
     assert_eq!(store.unjoined_segments().unwrap(), 5);
-    assert_eq!(store.keep_files(FileKind::Mission, &["a".to_owned()]).unwrap(), 1);
+    let other: BTreeSet<String> =
+        store.known_files(FileKind::Mission).unwrap().into_keys().filter(|path| path != "a").collect();
+    assert_eq!(other.len(), 1);
+    // That it is missing is recorded, and changes nothing.
+    store.put_missing(&other, "gone").unwrap();
+    assert_eq!((store.missing_files().unwrap(), points(&mut store)), (other.clone(), "4".to_owned()));
+    store.put_missing(&BTreeSet::new(), "gone").unwrap();
+    assert!(store.missing_files().unwrap().is_empty());
+    store.forget_files(&other).unwrap();
     assert_eq!(points(&mut store), "0");
     assert!(store.query_text("PRAGMA foreign_key_check").unwrap().is_empty());
 }

@@ -70,7 +70,9 @@ pub fn assumptions(study: &Study) -> Vec<Assumption> {
         false,
     );
     let split = match &study.weather.format {
-        WeatherFormat::Sia4028 => "direct and diffuse irradiance as in the reference year",
+        WeatherFormat::Sia4028 | WeatherFormat::Epw | WeatherFormat::Pvgis => {
+            "direct and diffuse irradiance as in the file; direct from global and diffuse by closure where it lacks"
+        }
         WeatherFormat::Csv(map) if map.dhi_column.is_some() && map.dni_column.is_some() => {
             "direct and diffuse irradiance as in the file"
         }

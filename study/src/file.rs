@@ -64,6 +64,9 @@ pub struct Missions {
     pub door_open_share: f64,
     #[serde(default)]
     pub keep_partial: bool,
+    // Whether what came from a mission that is gone stays is a matter of the job, not of the study.
+    #[serde(default, skip_serializing)]
+    pub forget_missing: bool,
     // What is expected of the data concerns whoever watches over a job, not the results.
     #[serde(default, skip_serializing)]
     pub expect_newest_within_hours: Option<f64>,
@@ -82,11 +85,21 @@ pub struct Weather {
     pub split: Split,
     pub time_column: Option<String>,
     pub time_label: Option<TimeLabel>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub time_zone: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub utc_offset: Option<String>,
     pub interval_s: Option<u32>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reference_year: Option<bool>,
     pub temperature_column: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub temperature_unit: Option<String>,
     pub ghi_column: Option<String>,
     pub dhi_column: Option<String>,
     pub dni_column: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub irradiance_unit: Option<String>,
     #[serde(default, skip_serializing)]
     pub expect_newest_within_hours: Option<f64>,
 }
@@ -116,6 +129,7 @@ pub enum Split {
 #[serde(rename_all = "lowercase")]
 pub enum TimeLabel {
     Start,
+    Middle,
     End,
 }
 

@@ -46,6 +46,8 @@ pub struct Study {
     pub buses: Vec<u32>,
     /// How missions become segments.
     pub missions: MissionOptions,
+    /// Whether what came from missions that are no longer there goes; otherwise it stays, and that is said.
+    pub forget_missing: bool,
     /// Where the weather is.
     pub weather_path: String,
     /// How it is read.
@@ -102,6 +104,7 @@ impl Study {
                 file::Split::Erbs => IrradianceSplit::Erbs,
             },
             site,
+            zone,
         };
         let (designs, design_rows): (Vec<_>, Vec<_>) =
             file.designs.iter().map(ready::design).collect::<Result<Vec<_>, _>>()?.into_iter().unzip();
@@ -125,6 +128,7 @@ impl Study {
             missions_path: file.missions.path.clone(),
             buses: file.missions.buses.clone(),
             missions,
+            forget_missing: file.missions.forget_missing,
             weather_path: file.weather.path.clone(),
             weather,
             expect_missions_within_h: ready::expected_h("[missions]", file.missions.expect_newest_within_hours)?,

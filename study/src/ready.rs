@@ -2,7 +2,7 @@
 
 use cabin::{ComfortWindow, Cop, Design, Devices, Heating, named_cooling_cops, named_heating_cops};
 use ingest::mission::MissionOptions;
-use ingest::weather::{ColumnMap, TimeLabel, WeatherFormat};
+use ingest::weather::{Clock, ColumnMap, IrradianceUnit, TemperatureUnit, TimeLabel, WeatherFormat};
 use solve::Method;
 use store::DesignRow;
 
@@ -32,6 +32,11 @@ pub(crate) fn weather_format(weather: &file::Weather) -> Result<WeatherFormat, S
         ("time_label", weather.time_label.is_some()),
         ("interval_s", weather.interval_s.is_some()),
         ("temperature_column", weather.temperature_column.is_some()),
+        ("time_zone", weather.time_zone.is_some()),
+        ("utc_offset", weather.utc_offset.is_some()),
+        ("reference_year", weather.reference_year.is_some()),
+        ("temperature_unit", weather.temperature_unit.is_some()),
+        ("irradiance_unit", weather.irradiance_unit.is_some()),
         ("ghi_column", weather.ghi_column.is_some()),
         ("dhi_column", weather.dhi_column.is_some()),
         ("dni_column", weather.dni_column.is_some()),
@@ -49,11 +54,29 @@ pub(crate) fn weather_format(weather: &file::Weather) -> Result<WeatherFormat, S
             }
             return Ok(WeatherFormat::Csv(ColumnMap {
                 time_column: weather.time_column.clone().ok_or_else(|| needed("time_column"))?,
-                time_label: match weather.time_label.ok_or_else(|| needed("time_label = \"start\" or \"end\""))? {
+                time_label: match weather
+                    .time_label
+                    .ok_or_else(|| needed("time_label = \"start\", \"middle\" or \"end\""))?
+                {
                     file::TimeLabel::Start => TimeLabel::Start,
+                    file::TimeLabel::Middle => TimeLabel::Middle,
                     file::TimeLabel::End => TimeLabel::End,
                 },
+                clock: clock(weather)?,
                 interval_s,
+                reference_year: weather.reference_year,
+                temperature_unit: unit(
+                    "temperature_unit",
+                    &weather.temperature_unit,
+                    &TemperatureUnit::ALL,
+                    TemperatureUnit::name,
+                )?,
+                irradiance_unit: unit(
+                    "irradiance_unit",
+                    &weather.irradiance_unit,
+                    &IrradianceUnit::ALL,
+                    IrradianceUnit::name,
+                )?,
                 temperature_column: weather.temperature_column.clone().ok_or_else(|| needed("temperature_column"))?,
                 ghi_column: weather.ghi_column.clone(),
                 dhi_column: weather.dhi_column.clone(),
@@ -65,6 +88,30 @@ pub(crate) fn weather_format(weather: &file::Weather) -> Result<WeatherFormat, S
         Some((name, _)) => Err(format!("[weather] {name} belongs to format = \"csv\" only; remove it")),
         None => Ok(known),
     }
+}
+
+/// What stamps without an offset mean.
+fn clock(weather: &file::Weather) -> Result<Clock, String> {
+    match (&weather.time_zone, &weather.utc_offset) {
+        (None, None) => Ok(Clock::Utc),
+        (Some(zone), None) => match zone.parse() {
+            Ok(zone) => Ok(Clock::Zone(zone)),
+            Err(_) => Err(format!("[weather] time_zone = {zone:?} is not known; take one such as \"Europe/Zurich\"")),
+        },
+        (None, Some(offset)) => Clock::of_offset(offset)
+            .ok_or_else(|| format!("[weather] utc_offset = {offset:?} is no offset; write one such as \"+01:00\"")),
+        (Some(_), Some(_)) => Err("[weather] has both time_zone and utc_offset; remove one of them".to_owned()),
+    }
+}
+
+/// The unit of a name; the first of all without one.
+fn unit<U: Copy>(key: &str, given: &Option<String>, all: &[U], name: fn(U) -> &'static str) -> Result<U, String> {
+    let Some(given) = given else { return all.first().copied().ok_or_else(|| format!("{key} has no units")) };
+    let error = || {
+        let known: Vec<&str> = all.iter().map(|unit| name(*unit)).collect();
+        format!("[weather] {key} = {given:?} is not known; known are: {}", known.join(", "))
+    };
+    all.iter().copied().find(|unit| name(*unit) == given).ok_or_else(error)
 }
 
 pub(crate) fn design((name, typed): &(String, file::Design)) -> Result<(Design, DesignRow), String> {

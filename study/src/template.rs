@@ -43,15 +43,28 @@ impl WeatherKeys {
 
     fn lines(self) -> [&'static str; 2] {
         const MAP: &str = "# format = \"csv\" only:\n# time_column = \"interval_start_utc\"\n\
-            # time_label = \"start\"            # or \"end\"\n# interval_s = 3600\n# temperature_column = \"T_degC\"\n\
-            # ghi_column = \"StrGlo_Wm2\"       # and/or dhi_column, dni_column\n";
-        const GIVEN: &str = "time_column = \"interval_start_utc\"\ntime_label = \"start\"              # or \"end\"\n\
+            # time_label = \"start\"            # or \"middle\", \"end\"\n\
+            # time_zone = \"Europe/Zurich\"    # of stamps without an offset; without it, or utc_offset = \"+01:00\", UTC\n\
+            # interval_s = 3600\n# temperature_column = \"T_degC\"\n\
+            # ghi_column = \"StrGlo_Wm2\"       # and/or dhi_column, dni_column\n\
+            # temperature_unit = \"C\"          # or \"K\", \"F\", \"0.1C\"\n\
+            # irradiance_unit = \"W/m2\"       # or \"J/m2\", \"kJ/m2\", \"MJ/m2\", \"J/cm2\", \"Wh/m2\", \"kWh/m2\"\n";
+        const GIVEN: &str = "time_column = \"interval_start_utc\"\ntime_label = \"start\"              # or \"middle\", \"end\"\n\
             interval_s = 3600\ntemperature_column = \"T_degC\"\n\
             ghi_column = \"StrGlo_Wm2\"         # and/or dhi_column, dni_column\n";
         match self {
-            Self::MeteoSwissOgd => ["format = \"meteoswiss-ogd\"         # or \"sia4028\", \"csv\"", MAP],
-            Self::Sia4028 => ["format = \"sia4028\"                # or \"meteoswiss-ogd\", \"csv\"", MAP],
-            Self::HourlyCsv => ["format = \"csv\"                    # or \"meteoswiss-ogd\", \"sia4028\"", GIVEN],
+            Self::MeteoSwissOgd => [
+                "format = \"meteoswiss-ogd\"         # or \"sia4028\", \"epw\", \"pvgis\", \"open-meteo\", \"ugz\", \"dwd\", \"csv\"",
+                MAP,
+            ],
+            Self::Sia4028 => [
+                "format = \"sia4028\"                # or \"meteoswiss-ogd\", \"epw\", \"pvgis\", \"open-meteo\", \"ugz\", \"dwd\", \"csv\"",
+                MAP,
+            ],
+            Self::HourlyCsv => [
+                "format = \"csv\"                    # or \"meteoswiss-ogd\", \"sia4028\", \"epw\", \"pvgis\", \"open-meteo\", \"ugz\", \"dwd\"",
+                GIVEN,
+            ],
         }
     }
 }

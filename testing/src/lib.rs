@@ -3,6 +3,7 @@
 mod days;
 mod designs;
 mod optimum;
+mod peer;
 mod year;
 
 pub use days::{
@@ -10,4 +11,5 @@ pub use days::{
 };
 pub use designs::{all_designs, design, paper_designs, paper_grid, paper_windows};
 pub use optimum::{operation, optimum};
+pub use peer::peer;
 pub use year::{YEAR_SAMPLES, year};

@@ -69,7 +69,7 @@ impl World {
         format!(
             "schema_version = 1\nname = \"world\"\ndatabase = \"study.db\"\nreport_dir = \"report\"\n\n\
              [location]\nlatitude_deg = 47.3779\nlongitude_deg = 8.5657\naltitude_m = 556.0\ntime_zone = \"{}\"\n\n\
-             [missions]\npath = \"{}\"\nbuses = [183]\nsegment_s = {}\ndoor_open_share = {:?}\nkeep_partial = {}\n\n\
+             [missions]\npath = \"{}\"\nbuses = [183]\nsegment_s = {}\ndoor_open_share = {:?}\nkeep_partial = {}\nforget_missing = true\n\n\
              [weather]\nformat = \"meteoswiss-ogd\"\npath = \"weather\"\nmax_gap_s = {}\n\n\
              [shadow]\npath = \"{}\"\n\n[comfort]\npmv_limits = {:?}\n\n{designs}\
              [vehicle]\nair_velocity_m_s = {:?}\n\n[simulation]\npmv_limits = {:?}\n",

@@ -1,11 +1,10 @@
 //! Where missions are found, and which of them cannot be used.
 
 use chrono::{DateTime, NaiveDateTime, TimeDelta, Utc};
-use std::collections::{BTreeMap, BTreeSet};
-use std::ffi::OsStr;
-use std::path::{Component, Path, PathBuf};
+use std::collections::BTreeMap;
+use std::path::Path;
 
-use crate::files::{extension, label, list, open_archive};
+use crate::walk::{Found, Place, walk};
 use crate::{Content, FileKind, FileReader, FileRecord, FileStamp, Finding, FindingKind, IngestError};
 
 /// No mission is longer; a name that says so is a misprint.
@@ -25,13 +24,6 @@ pub struct MissionSource {
     /// Last second, from the name.
     pub end: DateTime<Utc>,
     place: Place,
-}
-
-#[derive(Debug, Clone, PartialEq, Eq)]
-enum Place {
-    File(PathBuf),
-    Gzip(PathBuf),
-    Entry { archive: PathBuf, index: usize, bytes: u64 },
 }
 
 /// What was found where the study says that missions are.
@@ -54,9 +46,9 @@ pub struct Discovery {
 /// [`IngestError`] where the path does not exist or holds no mission.
 pub fn discover(base: &Path, pattern: &str, buses: &[u32]) -> Result<Discovery, IngestError> {
     let mut found = Discovery::default();
-    for path in list(base, pattern)? {
-        found.take_path(base, &path, 0);
-    }
+    let walked = walk(base, pattern, &["csv"])?;
+    walked.refused.into_iter().for_each(|(path, finding)| found.refuse(&path, finding));
+    walked.found.into_iter().for_each(|file| found.take(file));
     let mut others: Vec<u32> = found.missions.iter().map(|m| m.bus).collect();
     found.missions.retain(|m| buses.is_empty() || buses.contains(&m.bus));
     found.missions.sort_by(|a, b| (&a.name, &a.path).cmp(&(&b.name, &b.path)));
@@ -77,118 +69,17 @@ pub fn discover(base: &Path, pattern: &str, buses: &[u32]) -> Result<Discovery, 
     Ok(found)
 }
 
-/// Folders in folders that are looked into at most.
-const DEEPEST: usize = 8;
-/// Archives that are not read.
-const PACKED: [&str; 8] = ["gz", "7z", "tar", "tgz", "bz2", "xz", "zst", "rar"];
-
-/// Whether an operating system has left a file beside those of people.
-fn is_left_over(path: &Path) -> bool {
-    let starts = |name: &OsStr| {
-        let name = name.to_string_lossy();
-        name.starts_with("._") || name == ".DS_Store" || name == "__MACOSX"
-    };
-    path.components().any(|part| matches!(part, Component::Normal(name) if starts(name)))
-}
-
 impl Discovery {
-    /// A file, or a folder with all in it.
-    fn take_path(&mut self, base: &Path, path: &Path, depth: usize) {
-        let label = label(base, path);
-        if is_left_over(Path::new(&label)) {
-            return;
-        }
-        if path.is_dir() {
-            return self.take_folder(base, path, depth);
-        }
-        if path.is_symlink() && !path.exists() {
-            let message = "the link leads nowhere; its target is gone: bring it back, or remove the link";
-            return self.refuse(&label, Finding::whole(FindingKind::Unreadable, message));
-        }
-        match extension(path).as_str() {
-            "csv" => self.take(&label, path, Place::File(path.to_owned())),
-            "gz" if extension(&path.with_extension("")) == "csv" => {
-                self.take(&label, &path.with_extension(""), Place::Gzip(path.to_owned()));
-            }
-            "zip" => self.take_archive(base, path),
-            other if PACKED.contains(&other) => self.refuse_packed(&label),
-            _ => {}
-        }
-    }
-
-    fn take_folder(&mut self, base: &Path, path: &Path, depth: usize) {
-        let refused = |message: String| Finding::whole(FindingKind::Unreadable, message);
-        if depth == DEEPEST {
-            let message =
-                format!("more than {DEEPEST} folders in each other, or a link to one above; nothing in it is read");
-            return self.refuse(&label(base, path), refused(message));
-        }
-        let listed = std::fs::read_dir(path)
-            .and_then(|entries| entries.map(|entry| Ok(entry?.path())).collect::<std::io::Result<BTreeSet<PathBuf>>>());
-        match listed {
-            Ok(inside) => inside.iter().for_each(|path| self.take_path(base, path, depth + 1)),
-            Err(error) => {
-                let message = format!("the folder cannot be read: {error}; check its permissions");
-                self.refuse(&label(base, path), refused(message));
-            }
-        }
-    }
-
-    fn refuse_packed(&mut self, label: &str) {
-        let message = "such an archive is not read; unpack it";
-        self.refuse(label, Finding::whole(FindingKind::Unreadable, message));
-    }
-
-    fn take(&mut self, label: &str, file: &Path, place: Place) {
-        let stem = file.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+    fn take(&mut self, Found { label, name, place }: Found) {
+        let stem = name.rsplit_once('.').map_or(name.as_str(), |(stem, _)| stem).to_owned();
         if stem.to_lowercase().starts_with("metadata") {
             return;
         }
         match parse_name(&stem) {
             Ok((bus, start, end)) => {
-                self.missions.push(MissionSource { name: stem, path: label.to_owned(), bus, start, end, place });
+                self.missions.push(MissionSource { name: stem, path: label, bus, start, end, place });
             }
-            Err(reason) => self.refuse(label, Finding::whole(FindingKind::NotAMission, reason)),
-        }
-    }
-
-    fn take_archive(&mut self, base: &Path, path: &Path) {
-        let label = label(base, path);
-        let mut archive = match open_archive(path) {
-            Ok(archive) => archive,
-            Err(error) => {
-                let message = format!("not a readable zip archive: {error}; fetch it again");
-                return self.refuse(&label, Finding::whole(FindingKind::Unreadable, message));
-            }
-        };
-        for index in 0..archive.len() {
-            let (entry_label, inside, bytes) = match archive.by_index_raw(index) {
-                Ok(entry) if entry.is_dir() => continue,
-                Ok(entry) => {
-                    let name = String::from_utf8_lossy(entry.name_raw()).into_owned();
-                    (format!("{label}!{name}"), entry.enclosed_name(), entry.size())
-                }
-                Err(error) => {
-                    let message = format!("the entry cannot be read: {error}; fetch the archive again");
-                    self.refuse(&format!("{label}!{index}"), Finding::whole(FindingKind::Unreadable, message));
-                    continue;
-                }
-            };
-            match inside {
-                Some(file) if extension(&file) == "csv" && !is_left_over(&file) => {
-                    self.take(&entry_label, &file, Place::Entry { archive: path.to_owned(), index, bytes });
-                }
-                Some(file) if is_left_over(&file) => {}
-                Some(file) if extension(&file) == "zip" || PACKED.contains(&extension(&file).as_str()) => {
-                    self.refuse_packed(&entry_label);
-                }
-                Some(_) => {}
-                None => {
-                    let message =
-                        "its path leads out of the archive; such an archive is broken or hostile: fetch it again";
-                    self.refuse(&entry_label, Finding::whole(FindingKind::UnsafePath, message));
-                }
-            }
+            Err(reason) => self.refuse(&label, Finding::whole(FindingKind::NotAMission, reason)),
         }
     }
 
@@ -219,6 +110,12 @@ pub fn mission_name(path: &str) -> &str {
     file.rsplit_once('.').map_or(file, |(stem, _)| stem)
 }
 
+/// Bus, first and last second that the name of a mission says; `None` for other names.
+#[must_use]
+pub fn span_of_name(name: &str) -> Option<(u32, DateTime<Utc>, DateTime<Utc>)> {
+    parse_name(name).ok()
+}
+
 /// Bus, first and last second from `B183_2021-07-26_03-53-27_2021-07-26_07-18-47`.
 fn parse_name(stem: &str) -> Result<(u32, DateTime<Utc>, DateTime<Utc>), String> {
     let parsed = || {
@@ -241,31 +138,21 @@ impl MissionSource {
     /// # Errors
     /// The record of a refused file.
     pub fn load(&self, reader: &mut FileReader) -> Result<Content, Box<FileRecord>> {
-        let content = match &self.place {
-            Place::File(path) => reader.read(path),
-            Place::Gzip(path) => reader.read_gzip(path),
-            Place::Entry { archive, index, .. } => reader.read_entry(archive, *index),
-        };
-        content.map_err(|finding| Box::new(FileRecord::refused(&self.path, FileKind::Mission, "", 0, finding)))
+        self.place
+            .read(reader)
+            .map_err(|finding| Box::new(FileRecord::refused(&self.path, FileKind::Mission, "", 0, finding)))
     }
 
     /// Size of the content in bytes, as the system or the archive says; 0 where it does not.
     #[must_use]
     pub fn bytes(&self) -> u64 {
-        match &self.place {
-            Place::File(path) => std::fs::metadata(path).map_or(0, |m| m.len()),
-            // What it unpacks to is only known in the end: telemetry shrinks to a tenth.
-            Place::Gzip(path) => std::fs::metadata(path).map_or(0, |m| 12 * m.len()),
-            Place::Entry { bytes, .. } => *bytes,
-        }
+        self.place.bytes()
     }
 
     /// The stamp of the file, or of the archive that it lies in.
     #[must_use]
     pub fn stamp(&self) -> Option<FileStamp> {
-        match &self.place {
-            Place::File(path) | Place::Gzip(path) | Place::Entry { archive: path, .. } => FileStamp::of(path),
-        }
+        self.place.stamp()
     }
 }
 

@@ -11,7 +11,7 @@ use crate::telemetry::{TIME, Telemetry};
 use crate::{Content, ExcludedSegment, ExclusionReason, FileKind, FileRecord, Finding, FindingKind};
 use rows::Reader;
 
-pub use discover::{Discovery, MissionSource, discover, mission_name, overlaps};
+pub use discover::{Discovery, MissionSource, discover, mission_name, overlaps, span_of_name};
 
 /// Share of a segment's seconds that may be without telemetry.
 const MAX_MISSING_SHARE: f64 = 0.01;
@@ -65,6 +65,14 @@ pub struct MissionReading {
     pub loads: Vec<LoadChange>,
 }
 
+impl MissionReading {
+    /// The reading of a file that cannot be used.
+    #[must_use]
+    pub fn refused(file: FileRecord) -> Self {
+        Self { file, segments: Vec::new(), excluded: Vec::new(), loads: Vec::new() }
+    }
+}
+
 /// What the telemetry of a mission says of each of its segments.
 ///
 /// A row at `t` stands for `[t, t + 1)`. The last passenger count holds until the next, and before the first the bus is
@@ -72,12 +80,9 @@ pub struct MissionReading {
 #[must_use]
 pub fn read(source: &MissionSource, content: &Content, options: &MissionOptions) -> MissionReading {
     let bytes = content.bytes.len() as u64;
-    let refused = |finding| MissionReading {
-        file: FileRecord::refused(&source.path, FileKind::Mission, &content.blake3, bytes, finding)
-            .stamped(content.stamp),
-        segments: Vec::new(),
-        excluded: Vec::new(),
-        loads: Vec::new(),
+    let refused = |finding| {
+        let file = FileRecord::refused(&source.path, FileKind::Mission, &content.blake3, bytes, finding);
+        MissionReading::refused(file.stamped(content.stamp))
     };
     let telemetry = match Telemetry::read(&content.bytes) {
         Ok(telemetry) => telemetry,

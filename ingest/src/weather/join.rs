@@ -1,8 +1,8 @@
-//! Weather files become one series: joined on one axis, short gaps filled, irradiance split.
+//! Weather files become one series: joined value by value on one axis, short gaps filled, irradiance split.
 
 use chrono::{DateTime, Datelike};
-use shading::Site;
 
+use super::WeatherOptions;
 use super::series::{Calendar, Weather};
 use super::table::Table;
 use super::values::{MISSING, Quantity, Values};
@@ -16,57 +16,36 @@ pub enum IrradianceSplit {
     Erbs,
 }
 
-/// How tables become a series.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct JoinOptions {
-    /// Longest gap that is interpolated, in s.
-    pub max_gap_s: u32,
-    /// How global irradiance is split.
-    pub split: IrradianceSplit,
-    /// Where the sun is looked up for the split.
-    pub site: Site,
-}
+const LIGHT: [Quantity; 3] = [Quantity::Global, Quantity::Diffuse, Quantity::Direct];
 
-/// Joins the files on one axis, fills short gaps, and splits the irradiance.
-pub(crate) fn join(
+/// Joins the files on one axis, fills short gaps, and splits the irradiance. Of two values the first part's counts.
+pub(super) fn join(
     parts: &[(Table, usize)],
     records: &mut [FileRecord],
-    options: &JoinOptions,
+    options: &WeatherOptions,
 ) -> Result<Weather, String> {
-    let interval_s = parts[0].0.interval_s;
-    let starts = parts.iter().flat_map(|(table, _)| table.rows.iter().map(|r| r.start_s));
-    let (calendar, length) = Calendar::of(parts[0].0.calendar, interval_s, starts)?;
+    let (first, first_record) = &parts[0];
+    let interval_s = first.interval_s;
+    let starts = parts.iter().flat_map(|(table, _)| table.intervals.iter().map(|i| i.start_s));
+    let (calendar, length) = Calendar::of(first.order, interval_s, first.phase_s, starts)?;
     let mut values = vec![MISSING; length];
-    let mut taken = vec![0_u8; length];
     for (table, record) in parts {
-        let mut twice = 0;
-        for row in &table.rows {
-            let Some(slot) = calendar.slot(row.start_s, interval_s, length) else { continue };
-            if taken[slot] > 0 {
-                twice += 1;
-                continue;
-            }
-            taken[slot] = 1;
-            values[slot] = row.values;
-        }
+        let twice = take(table, calendar, &mut values);
         if twice > 0 {
-            let message = "the same interval again; the first one counts";
+            let message = "the same interval again; the file that was checked before, or the first one by name, counts";
             records[*record].findings.push(Finding::whole(FindingKind::DuplicateRow, message).times(twice));
         }
     }
-    let used = &parts[0].0.used;
     let max_run = (i64::from(options.max_gap_s) / interval_s) as usize;
-    let cyclic = calendar == Calendar::Year;
+    let cyclic = matches!(calendar, Calendar::Year { .. });
     let mut interpolated = vec![false; length];
-    let quantities = || Quantity::ALL.into_iter().filter(|&q| *used.get(q));
-    for quantity in quantities() {
-        fill_gaps(&mut values, quantity, max_run, cyclic, &mut interpolated);
-    }
+    fill_gaps(&mut values, &[Quantity::Temperature], max_run, cyclic, &mut interpolated);
+    fill_gaps(&mut values, &LIGHT, max_run, cyclic, &mut interpolated);
+    let is_whole = |v: &Values| !v.temperature.is_nan() && has_light(v);
     let (filled, missing) = values.iter().zip(&interpolated).fold((0, 0), |(filled, missing), (v, &i)| {
-        let whole = quantities().all(|q| !v.get(q).is_nan());
-        (filled + u64::from(i && whole), missing + u64::from(!whole))
+        (filled + u64::from(i && is_whole(v)), missing + u64::from(!is_whole(v)))
     });
-    let record = &mut records[parts[0].1];
+    let record = &mut records[*first_record];
     if filled > 0 {
         let message = format!("intervals in gaps of up to {} s, interpolated linearly", options.max_gap_s);
         record.findings.push(Finding::whole(FindingKind::Interpolated, message).times(filled));
@@ -78,7 +57,6 @@ pub(crate) fn join(
         );
         record.findings.push(Finding::whole(FindingKind::TimeGap, message).times(missing));
     }
-
     let mut weather = Weather {
         calendar,
         interval_s,
@@ -89,21 +67,7 @@ pub(crate) fn join(
         interpolated,
     };
     for (slot, value) in values.iter().enumerate() {
-        let middle = calendar.start(slot, interval_s) + interval_s / 2;
-        let split = if used.diffuse && used.direct {
-            BeamAndDiffuse { dni_w_m2: value.direct, dhi_w_m2: value.diffuse }
-        } else if value.global.is_nan() || (used.diffuse && value.diffuse.is_nan()) {
-            BeamAndDiffuse { dni_w_m2: f64::NAN, dhi_w_m2: f64::NAN }
-        } else {
-            let middle = DateTime::from_timestamp(middle, 0).ok_or("a stamp is out of range")?;
-            let altitude = options.site.sun(middle).altitude_rad;
-            let IrradianceSplit::Erbs = options.split;
-            if used.diffuse {
-                closure(value.global, value.diffuse, altitude, middle.ordinal())
-            } else {
-                erbs(value.global, altitude, middle.ordinal())
-            }
-        };
+        let split = split(value, calendar.start(slot, interval_s) + interval_s / 2, options)?;
         weather.temperature_k.push(value.temperature + 273.15);
         weather.dni_w_m2.push(split.dni_w_m2);
         weather.dhi_w_m2.push(split.dhi_w_m2);
@@ -111,10 +75,65 @@ pub(crate) fn join(
     Ok(weather)
 }
 
-/// Fills runs of up to `max_run` missing values linearly from their neighbours.
-fn fill_gaps(values: &mut [Values], quantity: Quantity, max_run: usize, cyclic: bool, filled: &mut [bool]) {
+/// Takes what is missing from a table, and says in how many intervals it had nothing new to say.
+fn take(table: &Table, calendar: Calendar, values: &mut [Values]) -> u64 {
+    let mut twice = 0;
+    for interval in &table.intervals {
+        let Some(slot) = calendar.slot(interval.start_s, table.interval_s, values.len()) else { continue };
+        let (mut new, mut old) = (false, false);
+        for quantity in Quantity::ALL {
+            let (here, there) = (values[slot].get_mut(quantity), *interval.values.get(quantity));
+            if there.is_nan() {
+                continue;
+            }
+            if here.is_nan() {
+                *here = there;
+                new = true;
+            } else {
+                old = true;
+            }
+        }
+        twice += u64::from(old && !new);
+    }
+    twice
+}
+
+/// Whether an interval's direct and diffuse irradiance are known, or can be modelled.
+fn has_light(values: &Values) -> bool {
+    !values.global.is_nan() || !(values.diffuse.is_nan() || values.direct.is_nan())
+}
+
+/// Direct and diffuse irradiance at a second since 1970: as measured; else from what is measured of them and the global one;
+/// else from the global one alone.
+fn split(value: &Values, second: i64, options: &WeatherOptions) -> Result<BeamAndDiffuse, String> {
+    if !(value.diffuse.is_nan() || value.direct.is_nan()) {
+        return Ok(BeamAndDiffuse { dni_w_m2: value.direct, dhi_w_m2: value.diffuse });
+    }
+    if value.global.is_nan() {
+        return Ok(BeamAndDiffuse { dni_w_m2: f64::NAN, dhi_w_m2: f64::NAN });
+    }
+    let instant = DateTime::from_timestamp(second, 0).ok_or("a stamp is out of range")?;
+    let altitude = options.site.sun(instant).altitude_rad;
+    let IrradianceSplit::Erbs = options.split;
+    Ok(if !value.diffuse.is_nan() {
+        closure(value.global, value.diffuse, altitude, instant.ordinal())
+    } else if !value.direct.is_nan() {
+        let diffuse = value.global - value.direct * altitude.sin().max(0.0);
+        BeamAndDiffuse { dni_w_m2: value.direct, dhi_w_m2: diffuse.max(0.0) }
+    } else {
+        erbs(value.global, altitude, instant.ordinal())
+    })
+}
+
+/// Fills runs of up to `max_run` intervals that lack the quantities, linearly from their neighbours: the temperature, or the
+/// light, of which an interval lacks nothing where the rest can be modelled.
+fn fill_gaps(values: &mut [Values], quantities: &[Quantity], max_run: usize, cyclic: bool, filled: &mut [bool]) {
     let n = values.len();
-    let known: Vec<usize> = (0..n).filter(|&i| !values[i].get(quantity).is_nan()).collect();
+    let is_known = |v: &Values| match quantities {
+        [Quantity::Temperature] => !v.temperature.is_nan(),
+        _ => has_light(v),
+    };
+    let known: Vec<usize> = (0..n).filter(|&i| is_known(&values[i])).collect();
     let inner = known.windows(2).map(|w| (w[0], w[1]));
     let around = match (cyclic, known.first(), known.last()) {
         (true, Some(&first), Some(&last)) => Some((last, first + n)),
@@ -125,11 +144,14 @@ fn fill_gaps(values: &mut [Values], quantity: Quantity, max_run: usize, cyclic: 
         if run == 0 || run > max_run {
             continue;
         }
-        let (from, to) = (*values[before].get(quantity), *values[after % n].get(quantity));
+        let (from, to) = (values[before], values[after % n]);
         for i in before + 1..after {
             let share = (i - before) as f64 / (after - before) as f64;
-            *values[i % n].get_mut(quantity) = from + share * (to - from);
-            filled[i % n] = true;
+            for &quantity in quantities {
+                let (from, to) = (*from.get(quantity), *to.get(quantity));
+                *values[i % n].get_mut(quantity) = from + share * (to - from);
+            }
+            filled[i % n] = is_known(&values[i % n]);
         }
     }
 }

@@ -2,8 +2,10 @@
 
 use chrono::NaiveDateTime;
 
-use super::format::{Column, Encoding, Format, Layout, RowOrder};
+use super::format::{Column, Extent, Format, Layout};
+use super::stamp::Stamp;
 use super::values::PerQuantity;
+use crate::Finding;
 
 /// The name in study files.
 pub(crate) const NAME: &str = "meteoswiss-ogd";
@@ -16,42 +18,47 @@ impl Format for MeteoSwissOgd {
         NAME
     }
 
-    fn fits(&self, name: &str) -> bool {
-        name.starts_with("ogd-smn_") && !name.starts_with("ogd-smn_meta_") && name.ends_with(".csv")
-    }
-
-    fn file_names(&self) -> &'static str {
-        "ogd-smn_<station>_t_….csv or ogd-smn_<station>_h_….csv"
-    }
-
-    fn layout(&self, header: &[u8]) -> Layout {
+    fn layout(&self, text: &str) -> Result<Option<Layout>, Finding> {
+        let header = text.lines().next().unwrap_or_default();
+        if !header.contains("station_abbr") || !header.contains("reference_timestamp") {
+            return Ok(None);
+        }
         // Ten-minute columns end in s0 or z0, hourly ones in h0.
-        let hourly = header.windows(8).any(|w| w == b"tre200h0" || w == b"gre000h0");
+        let hourly = ["tre200h0", "gre000h0"].iter().any(|name| header.contains(name));
         let (temperature, global, diffuse, interval_s) =
             if hourly { ("tre200h0", "gre000h0", "ods000h0", 3600) } else { ("tre200s0", "gre000z0", "ods000z0", 600) };
-        Layout {
+        let columns = PerQuantity {
+            temperature: Column::needed(temperature),
+            global: Column::needed(global),
+            // A column of every file, empty at most stations.
+            diffuse: Column::optional(diffuse),
+            direct: Column::None,
+        };
+        Ok(Some(Layout {
             separator: ';',
-            encoding: Encoding::Windows1252,
-            time: vec!["reference_timestamp".to_owned()],
-            station: Some("station_abbr"),
-            columns: PerQuantity {
-                temperature: Column::Needed(temperature.to_owned()),
-                global: Column::Needed(global.to_owned()),
-                // A column of every file, empty at most stations.
-                diffuse: Column::Optional(diffuse.to_owned()),
-                direct: Column::None,
-            },
-            interval_s,
-            calendar: RowOrder::Series,
-        }
+            station: Some("station_abbr".to_owned()),
+            ..Layout::new(Extent::whole(text), &["reference_timestamp"], columns, interval_s)
+        }))
     }
 
-    fn start_s(&self, fields: &[&str], interval_s: i64) -> Option<i64> {
-        let stamp = NaiveDateTime::parse_from_str(fields.first()?, "%d.%m.%Y %H:%M").ok()?;
-        Some(stamp.and_utc().timestamp() - interval_s)
+    fn known_by(&self) -> &'static str {
+        "the columns station_abbr and reference_timestamp"
+    }
+
+    fn stamp(&self, fields: &[&str]) -> Option<Stamp> {
+        Some(Stamp::utc(NaiveDateTime::parse_from_str(fields.first()?, "%d.%m.%Y %H:%M").ok()?))
     }
 
     fn stamp_form(&self) -> &'static str {
         "not a stamp like 31.12.2022 23:00"
+    }
+
+    /// What was checked last is best: the historical files, the recent ones, those of now.
+    fn rank(&self, label: &str) -> u8 {
+        let name = label.rsplit('/').next().unwrap_or(label).to_lowercase();
+        match ["_historical", "_recent", "_now"].iter().position(|part| name.contains(part)) {
+            Some(place) => place as u8,
+            None => 3,
+        }
     }
 }

@@ -30,8 +30,9 @@ pub struct Weather {
 pub(super) enum Calendar {
     /// Intervals counted from this second since 1970.
     Series { start_s: i64 },
-    /// Hours of one reference year, repeated by calendar date; 29 February takes the 28th.
-    Year,
+    /// Hours of one reference year, repeated by calendar date; 29 February takes the 28th. They begin so many seconds after
+    /// full hours.
+    Year { phase_s: i64 },
 }
 
 /// Weather of a segment.
@@ -52,10 +53,11 @@ impl Calendar {
     pub(super) fn of(
         order: RowOrder,
         interval_s: i64,
+        phase_s: i64,
         starts: impl Iterator<Item = i64> + Clone,
     ) -> Result<(Self, usize), String> {
         if order == RowOrder::ReferenceYear {
-            return Ok((Self::Year, YEAR_HOURS));
+            return Ok((Self::Year { phase_s }, YEAR_HOURS));
         }
         let (first, last) = (starts.clone().min().unwrap_or(0), starts.max().unwrap_or(0));
         if last - first > MAX_YEARS * 366 * 86_400 {
@@ -77,7 +79,7 @@ impl Calendar {
             Self::Series { start_s } => {
                 usize::try_from((second - start_s).div_euclid(interval_s)).ok().filter(|&slot| slot < length)
             }
-            Self::Year => Some(hour_of_year(DateTime::from_timestamp(second, 0)?)),
+            Self::Year { phase_s } => Some(hour_of_year(DateTime::from_timestamp(second - phase_s, 0)?)),
         }
     }
 
@@ -85,7 +87,9 @@ impl Calendar {
     pub(super) fn start(self, slot: usize, interval_s: i64) -> i64 {
         let origin = match self {
             Self::Series { start_s } => start_s,
-            Self::Year => Utc.with_ymd_and_hms(2023, 1, 1, 0, 0, 0).single().map_or(0, |t| t.timestamp()),
+            Self::Year { phase_s } => {
+                phase_s + Utc.with_ymd_and_hms(2023, 1, 1, 0, 0, 0).single().map_or(0, |t| t.timestamp())
+            }
         };
         origin + slot as i64 * interval_s
     }

@@ -1,258 +1,210 @@
-//! The rows of a weather file of any format, with what is wrong in them.
+//! A weather file of any format as the intervals of its stations, with what is wrong in it.
 
 use chrono::DateTime;
-use std::path::Path;
 
-use super::format::{Column, Encoding, Format, Interval, Layout, RowOrder};
-use super::values::{MISSING, PerQuantity, Quantity, Values};
-use crate::files::{Content, check_lines, check_text, find_columns};
-use crate::{FileKind, FileRecord, Finding, FindingKind};
+use super::format::{Format, Layout, RowOrder};
+use super::intervals::{Interval, intervals};
+use super::notes::Notes;
+use super::rows::Rows;
+use super::sunlight::Sky;
+use super::values::{PerQuantity, Quantity};
+use super::{WeatherFile, WeatherFormat, WeatherOptions, plausible, sunlight};
+use crate::files::check_text;
+use crate::{Content, FileKind, FileReader, FileRecord, Finding, FindingKind};
 
-/// Sixty years of intervals of ten minutes.
-const MOST_ROWS: usize = 60 * 366 * 144;
-/// Air temperatures on Earth, in °C.
-const TEMPERATURE_RANGE: (f64, f64) = (-60.0, 60.0);
-/// Above this a value in a temperature column is one in K.
-const HOTTEST_C: f64 = 100.0;
-/// A pyranometer may read this much below zero at night, in W/m².
-const NIGHT_OFFSET: f64 = -10.0;
-/// No more arrives at the ground, in W/m².
-const MAX_IRRADIANCE: f64 = 1500.0;
+/// A file that lies so far from the study's place is of another one, in degrees.
+const OTHER_PLACE_DEG: f64 = 0.5;
 
-/// The usable rows of a file.
+/// The usable intervals of one station in a file.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Table {
     /// Abbreviation of the station in lower case, where the file has one.
     pub station: Option<String>,
     /// Length of an interval in s.
     pub interval_s: i64,
-    /// How its rows make a series.
-    pub calendar: RowOrder,
-    /// Which quantities it has.
-    pub used: PerQuantity<bool>,
-    /// Its rows.
-    pub rows: Vec<Interval>,
+    /// Seconds from full intervals since 1970 to its own.
+    pub phase_s: i64,
+    /// How its intervals make a series.
+    pub order: RowOrder,
+    /// Which quantities it has values of.
+    pub has: PerQuantity<bool>,
+    /// Its intervals.
+    pub intervals: Vec<Interval>,
 }
 
-pub(crate) fn read_file(label: &str, path: &Path, format: &dyn Format) -> (Option<Table>, FileRecord) {
-    let content = match Content::read(path) {
-        Ok(content) => content,
-        Err(finding) => return (None, FileRecord::refused(label, FileKind::Weather, "", 0, finding)),
-    };
-    let bytes = content.bytes.len() as u64;
-    match parse(&content.bytes, format) {
-        Ok(Parsed { table, rows, findings }) => {
-            let time = |s: Option<i64>| s.and_then(|s| DateTime::from_timestamp(s, 0));
-            let record = FileRecord {
-                path: label.to_owned(),
-                kind: FileKind::Weather,
-                blake3: content.blake3,
-                bytes,
-                rows,
-                first: time(table.rows.iter().map(|r| r.start_s).min()),
-                last: time(table.rows.iter().map(|r| r.start_s + table.interval_s).max()),
-                stamp: content.stamp,
-                accepted: true,
-                findings,
-            };
-            (Some(table), record)
-        }
-        Err(finding) => {
-            let record = FileRecord::refused(label, FileKind::Weather, &content.blake3, bytes, finding);
-            (None, record.stamped(content.stamp))
+impl Table {
+    /// Whether both make one series.
+    pub fn goes_with(&self, other: &Self) -> bool {
+        (self.interval_s, self.phase_s, self.order) == (other.interval_s, other.phase_s, other.order)
+    }
+
+    /// What intervals it has, for messages.
+    pub fn kind(&self) -> String {
+        let kind = if self.order == RowOrder::ReferenceYear { "hours of a reference year" } else { "intervals" };
+        match self.phase_s {
+            0 => format!("{kind} of {} s", self.interval_s),
+            phase_s => format!("{kind} of {} s, {phase_s} s beside full ones of UTC", self.interval_s),
         }
     }
 }
 
-struct Parsed {
-    table: Table,
+/// Reads a file; one that cannot be used has no tables.
+pub(crate) fn read_file(
+    file: &WeatherFile,
+    options: &WeatherOptions,
+    reader: &mut FileReader,
+) -> (Vec<Table>, FileRecord) {
+    let label = file.path();
+    let content = match file.0.place.read(reader) {
+        Ok(content) => content,
+        Err(finding) => return (Vec::new(), FileRecord::refused(label, FileKind::Weather, "", 0, finding)),
+    };
+    let format = options.format.reader();
+    let parsed = decode(&content.bytes, format).and_then(|text| {
+        let layout = format.layout(&text)?.ok_or_else(|| other_format(&text, format))?;
+        parse(&text, &layout, options)
+    });
+    let read = match parsed {
+        Ok((tables, said)) => (tables, said.of(label, &content)),
+        Err(mut finding) => {
+            if finding.kind == FindingKind::MissingColumn
+                && let Some(other) = of_other_format(&content.bytes, format)
+            {
+                finding.message = format!("{}; it is one of `format = {other:?}`", finding.message);
+            }
+            let bytes = content.bytes.len() as u64;
+            let record = FileRecord::refused(label, FileKind::Weather, &content.blake3, bytes, finding);
+            (Vec::new(), record.stamped(content.stamp))
+        }
+    };
+    reader.recycle(content);
+    read
+}
+
+fn decode(bytes: &[u8], format: &dyn Format) -> Result<String, Finding> {
+    let utf8 = bytes.starts_with(b"\xef\xbb\xbf")
+        || !format.may_be_windows_1252()
+        || simdutf8::basic::from_utf8(bytes).is_ok();
+    check_text(bytes, utf8)?;
+    let encoding = if utf8 { encoding_rs::UTF_8 } else { encoding_rs::WINDOWS_1252 };
+    Ok(encoding.decode(bytes).0.into_owned())
+}
+
+/// The name of the format that a file is of, where it is another one.
+fn of_other_format(bytes: &[u8], format: &dyn Format) -> Option<&'static str> {
+    let text = decode(bytes, &super::meteoswiss_ogd::MeteoSwissOgd).ok()?;
+    WeatherFormat::of_text(&text).map(|other| other.name()).filter(|name| *name != format.name())
+}
+
+/// What is said of a file that is not of a format.
+fn other_format(text: &str, format: &dyn Format) -> Finding {
+    let remedy = match WeatherFormat::of_text(text) {
+        Some(other) => format!("it is one of `format = {:?}`", other.name()),
+        None => "name its columns with `format = \"csv\"`, or remove it".to_owned(),
+    };
+    let message =
+        format!("not a file of the format {}, which is known by {}; {remedy}", format.name(), format.known_by());
+    Finding::whole(FindingKind::OtherFormat, message).at_line(1)
+}
+
+/// What is said of a file that is read.
+struct Said {
     rows: u64,
+    first_s: Option<i64>,
+    last_s: Option<i64>,
     findings: Vec<Finding>,
 }
 
-fn parse(bytes: &[u8], format: &dyn Format) -> Result<Parsed, Finding> {
-    let header = bytes.split(|&b| b == b'\n').next().unwrap_or_default();
-    let layout = format.layout(header);
-    check_text(bytes, layout.encoding == Encoding::Utf8)?;
-    check_lines(bytes, layout.separator as u8, MOST_ROWS)?;
-    let utf8 = layout.encoding == Encoding::Utf8 || bytes.starts_with(b"\xef\xbb\xbf");
-    let (text, ..) = if utf8 { encoding_rs::UTF_8.decode(bytes) } else { encoding_rs::WINDOWS_1252.decode(bytes) };
-    let mut reader = csv::ReaderBuilder::new()
-        .delimiter(layout.separator as u8)
-        .flexible(true)
-        // Lines end at \n, so that they count right in files with \r\n; trimming removes the \r.
-        .terminator(csv::Terminator::Any(b'\n'))
-        .trim(csv::Trim::All)
-        .from_reader(text.as_bytes());
-    let header = reader.headers().map_err(|e| not_csv(&e))?.clone();
-    let places = Places::find(&layout, &header)?;
+impl Said {
+    fn of(self, label: &str, content: &Content) -> FileRecord {
+        let time = |s: Option<i64>| s.and_then(|s| DateTime::from_timestamp(s, 0));
+        FileRecord {
+            path: label.to_owned(),
+            kind: FileKind::Weather,
+            blake3: content.blake3.clone(),
+            bytes: content.bytes.len() as u64,
+            rows: self.rows,
+            first: time(self.first_s),
+            last: time(self.last_s),
+            stamp: content.stamp,
+            accepted: true,
+            findings: self.findings,
+        }
+    }
+}
 
+fn parse(text: &str, layout: &Layout, options: &WeatherOptions) -> Result<(Vec<Table>, Said), Finding> {
     let mut notes = Notes::default();
-    let mut rows: Vec<Interval> = Vec::new();
-    let mut station_name: Option<String> = None;
-    let mut records = 0;
-    let mut last_s = i64::MIN;
-    let mut record = csv::StringRecord::new();
-    while reader.read_record(&mut record).map_err(|e| not_csv(&e))? {
-        let line = record.position().map_or(0, csv::Position::line);
-        records += 1;
-        let field = |position: usize| record.get(position).unwrap_or("");
-        let stamp: Vec<&str> = places.time.iter().map(|&p| field(p)).collect();
-        let Some(start_s) = format.start_s(&stamp, layout.interval_s) else {
-            let message = || format!("{:?}: {}", stamp.join(","), format.stamp_form());
-            notes.add(FindingKind::RefusedRow, &layout.time[0], line, message);
-            continue;
-        };
-        if start_s.rem_euclid(layout.interval_s) != 0 {
-            let form = format!("the stamp is no multiple of {} s; check interval and file", layout.interval_s);
-            notes.add(FindingKind::RefusedRow, &layout.time[0], line, || form);
-            continue;
-        }
-        if layout.calendar == RowOrder::Series && start_s <= last_s {
-            let (kind, message) = if start_s == last_s {
-                (FindingKind::DuplicateRow, "the same interval again; the first row counts")
-            } else {
-                (FindingKind::RefusedRow, "time runs backwards; sort the file by time")
-            };
-            notes.add(kind, &layout.time[0], line, || message.to_owned());
-            continue;
-        }
-        if let Some(position) = places.station {
-            let name = field(position).to_lowercase();
-            match &station_name {
-                Some(first) if *first != name => {
-                    let message = format!("the station changes from {first:?} to {name:?}; one file, one station");
-                    let finding = Finding::whole(FindingKind::RefusedRow, message).at_line(line);
-                    return Err(finding.in_column(layout.station.unwrap_or_default()));
-                }
-                Some(_) => {}
-                None => station_name = Some(name),
-            }
-        }
-        last_s = start_s;
-        let mut values: Values = MISSING;
-        for quantity in Quantity::ALL {
-            if let Some((name, position)) = places.columns.get(quantity) {
-                *values.get_mut(quantity) = notes.value(field(*position), quantity, name, line);
-            }
-        }
-        rows.push(Interval { start_s, values });
+    notes.list.clone_from(&layout.notes);
+    let rows = Rows::read(text, options.format.reader(), layout, &mut notes)?;
+    if let Some(finding) = notes.refusal(layout) {
+        return Err(finding);
     }
-    if rows.is_empty() {
+    let sky = sky(layout, options, &mut notes);
+    let wanted = |station: &Option<String>| match (&options.station, station) {
+        (Some(wanted), Some(station)) => *wanted.to_lowercase() == **station,
+        _ => true,
+    };
+    let (count, has_column) = (rows.count, rows.has);
+    let is_here = rows.stations.keys().any(wanted);
+    let mut tables = Vec::new();
+    for (station, rows) in rows.stations {
+        let (interval_s, order) = (layout.interval_s, layout.order);
+        if !wanted(&station) {
+            // Its name is all that is asked for.
+            tables.push(Table {
+                station,
+                interval_s,
+                phase_s: 0,
+                order,
+                has: PerQuantity::default(),
+                intervals: Vec::new(),
+            });
+            continue;
+        }
+        let (mut intervals, order) = intervals(&rows, layout, &mut notes)?;
+        plausible::convert(&mut intervals, layout);
+        plausible::check_temperatures(&mut intervals, layout, &mut notes)?;
+        sunlight::check(&intervals, layout, &sky, notes.bare_stamps, options.format.is_named_by_study())?;
+        plausible::check_irradiances(&mut intervals, layout, &mut notes)?;
+        let has = Quantity::ALL.map(|q| intervals.iter().any(|i| !i.values.get(q).is_nan()));
+        let [temperature, global, diffuse, direct] = has;
+        let has = PerQuantity { temperature, global, diffuse, direct };
+        let phase_s = intervals.first().map_or(0, |i| i.start_s.rem_euclid(interval_s));
+        tables.push(Table { station, interval_s, phase_s, order, has, intervals });
+    }
+    if (is_here || tables.is_empty()) && tables.iter().all(|table| table.intervals.is_empty()) {
         let message = "there are no usable rows below the header";
-        return Err(notes.first().unwrap_or_else(|| Finding::whole(FindingKind::Empty, message).at_line(2)));
+        let first = layout.table.first_line + 1;
+        let none = || Finding::whole(FindingKind::Empty, message).at_line(first);
+        return Err(notes.list.into_iter().find(|f| f.kind == FindingKind::RefusedRow).unwrap_or_else(none));
     }
-    if notes.hot * 2 > rows.len() as u64 {
-        let message = "the temperatures are above 100, probably in K; the column must be in °C: convert it";
-        let name = layout.columns.temperature.name().unwrap_or_default();
-        return Err(Finding::whole(FindingKind::WrongUnit, message).in_column(name).at_line(notes.hot_line));
-    }
-    let mut used = places.columns.map(Option::is_some);
-    for quantity in Quantity::ALL {
-        let Column::Optional(name) = layout.columns.get(quantity) else { continue };
-        // A column without a single value is one that the station does not measure.
-        if rows.iter().all(|r| r.values.get(quantity).is_nan()) {
-            *used.get_mut(quantity) = false;
-            let of_column = |f: &Finding| f.kind == FindingKind::MissingValue && f.column.as_ref() == Some(name);
+    // A column without a single value is one that the station does not measure.
+    for quantity in Quantity::ALL.into_iter().filter(|q| *has_column.get(*q) && layout.long.is_none()) {
+        if tables.iter().all(|table| !table.has.get(quantity)) {
+            let of_column = |f: &Finding| {
+                f.kind == FindingKind::MissingValue && f.column.as_deref() == Some(layout.column(quantity))
+            };
             notes.list.retain(|f| !of_column(f));
         }
     }
-    let (interval_s, calendar) = (layout.interval_s, layout.calendar);
-    let table = Table { station: station_name, interval_s, calendar, used, rows };
-    Ok(Parsed { table, rows: records, findings: notes.list })
+    let starts = || tables.iter().flat_map(|table| table.intervals.iter().map(|i| i.start_s));
+    let last_s = starts().max().map(|s| s + layout.interval_s);
+    let said = Said { rows: count, first_s: starts().min(), last_s, findings: notes.list };
+    Ok((tables, said))
 }
 
-/// Where the columns of a layout stand in a file.
-struct Places {
-    time: Vec<usize>,
-    station: Option<usize>,
-    columns: PerQuantity<Option<(String, usize)>>,
-}
-
-impl Places {
-    fn find(layout: &Layout, header: &csv::StringRecord) -> Result<Self, Finding> {
-        let mut columns = layout.columns.clone();
-        for quantity in Quantity::ALL {
-            let column = columns.get_mut(quantity);
-            if matches!(column, Column::Optional(name) if !header.iter().any(|h| h == name)) {
-                *column = Column::None;
-            }
-        }
-        let named: Vec<(Quantity, &str)> =
-            Quantity::ALL.into_iter().filter_map(|q| Some((q, columns.get(q).name()?))).collect();
-        let mut wanted: Vec<&str> = layout.time.iter().map(String::as_str).collect();
-        wanted.extend(layout.station);
-        wanted.extend(named.iter().map(|(_, name)| *name));
-        let positions = find_columns(header, &wanted, layout.separator)?;
-        let (time, rest) = positions.split_at(layout.time.len());
-        let (station, rest) = rest.split_at(usize::from(layout.station.is_some()));
-        let mut places =
-            Self { time: time.to_vec(), station: station.first().copied(), columns: PerQuantity::default() };
-        for ((quantity, name), &position) in named.into_iter().zip(rest) {
-            *places.columns.get_mut(quantity) = Some((name.to_owned(), position));
-        }
-        Ok(places)
+/// The sky that a file lies under: that of its own place, where it says one.
+fn sky(layout: &Layout, options: &WeatherOptions, notes: &mut Notes) -> Sky {
+    let site = [options.site.latitude_deg(), options.site.longitude_deg()];
+    let place = layout.place.unwrap_or(site);
+    if place.iter().zip(site).any(|(a, b)| (a - b).abs() > OTHER_PLACE_DEG) {
+        let [latitude, longitude] = place;
+        let message = format!(
+            "the file is of the place {latitude}° N, {longitude}° E, the study of {}° N, {}° E; is it meant?",
+            site[0], site[1]
+        );
+        notes.list.push(Finding::whole(FindingKind::OtherPlace, message).at_line(1));
     }
-}
-
-fn not_csv(error: &csv::Error) -> Finding {
-    Finding::whole(FindingKind::Unreadable, format!("the file cannot be read as a table: {error}; fetch it again"))
-}
-
-/// What was noticed, one finding per kind and column.
-#[derive(Default)]
-struct Notes {
-    list: Vec<Finding>,
-    /// Temperatures that must be in K, and where the first stands.
-    hot: u64,
-    hot_line: u64,
-}
-
-impl Notes {
-    fn add(&mut self, kind: FindingKind, column: &str, line: u64, message: impl FnOnce() -> String) {
-        match self.list.iter_mut().find(|f| f.kind == kind && f.column.as_deref() == Some(column)) {
-            Some(finding) => finding.count += 1,
-            None => self.list.push(Finding::whole(kind, message()).in_column(column).at_line(line)),
-        }
-    }
-
-    fn first(&self) -> Option<Finding> {
-        self.list.first().cloned()
-    }
-
-    /// A value within its physical range, else NaN and a note.
-    fn value(&mut self, text: &str, quantity: Quantity, column: &str, line: u64) -> f64 {
-        if matches!(text, "" | "-" | "NaN" | "NA") {
-            self.add(FindingKind::MissingValue, column, line, || "no value".to_owned());
-            return f64::NAN;
-        }
-        let Some(value) = text.parse::<f64>().ok().filter(|v| v.is_finite()) else {
-            self.add(FindingKind::RefusedValue, column, line, || format!("{text:?}: not a number; taken as missing"));
-            return f64::NAN;
-        };
-        if quantity == Quantity::Temperature {
-            if value > HOTTEST_C {
-                self.hot += 1;
-                self.hot_line = if self.hot == 1 { line } else { self.hot_line };
-            }
-            let (low, high) = TEMPERATURE_RANGE;
-            if !(low..=high).contains(&value) {
-                let message = || format!("{text}: outside {low} … {high} °C; taken as missing");
-                self.add(FindingKind::OutOfRange, column, line, message);
-                return f64::NAN;
-            }
-            return value;
-        }
-        if !(NIGHT_OFFSET..=MAX_IRRADIANCE).contains(&value) {
-            let message = || format!("{text}: irradiance outside 0 … {MAX_IRRADIANCE} W/m²; taken as missing");
-            self.add(FindingKind::OutOfRange, column, line, message);
-            return f64::NAN;
-        }
-        if value < 0.0 {
-            let message = || format!("{text}: small negative irradiance of a sensor at night; taken as 0");
-            self.add(FindingKind::NegativeOffset, column, line, message);
-            return 0.0;
-        }
-        value
-    }
+    Sky { latitude_rad: place[0].to_radians(), longitude_rad: place[1].to_radians(), zone: options.zone }
 }

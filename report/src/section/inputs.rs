@@ -3,7 +3,7 @@
 use ingest::FileKind;
 
 use crate::StudyReport;
-use crate::document::{Block, Column, DataTable, Section, Table};
+use crate::document::{Block, Column, DataTable, Section, Span, Table};
 use crate::numbers::{text, time};
 
 pub(super) fn section(study: &StudyReport) -> Section {
@@ -24,9 +24,19 @@ pub(super) fn section(study: &StudyReport) -> Section {
     let rows = [FileKind::Mission, FileKind::Weather, FileKind::Shadow].map(row).to_vec();
     let mut table = Table::new(&["kind"], &["used", "refused", "rows", "bytes"], rows);
     table.columns.extend(["first", "last"].map(|c| Column::Words(c.to_owned())));
-    Section { tables: vec![data(study)], ..Section::new("Inputs") }
+    let section = Section { tables: vec![data(study)], ..Section::new("Inputs") }
         .with(Block::words("Every file with its hash is in sources.csv."))
-        .with(Block::Table(table))
+        .with(Block::Table(table));
+    let missing: Vec<&str> = study.files.iter().filter(|f| f.is_missing()).map(|f| f.path.as_str()).collect();
+    match missing.first() {
+        None => section,
+        Some(first) => section.with(Block::Paragraph(vec![
+            Span::Value(missing.len().to_string()),
+            Span::Text(" missions were not there when they were last looked for, the first: "),
+            Span::Value((*first).to_owned()),
+            Span::Text(". What came from them is kept,\nand is part of all numbers here."),
+        ])),
+    }
 }
 
 fn data(study: &StudyReport) -> DataTable {
