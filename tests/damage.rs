@@ -32,7 +32,7 @@ fn prop_a_changed_bit_is_found_or_changes_nothing() {
         CONTENT.into_iter().filter(|sql| sql.contains("_average") || sql.contains("_annual")).collect();
     let of = |scratch: &Scratch| averages.iter().map(|sql| scratch.exact(sql).ok()).collect::<Vec<_>>();
     let (averages_before, report) = (of(&scratch), scratch.report());
-    let flips: u64 = std::env::var("BUSCLIMATE_FLIPS").ok().and_then(|n| n.parse().ok()).unwrap_or(60);
+    let flips: u64 = std::env::var("BUSCLIMATE_FLIPS").ok().and_then(|n| n.parse().ok()).unwrap_or(100);
     let (mut damaged, mut found) = (0, 0);
     for seed in 0..flips {
         let mut dice = ChaCha8Rng::seed_from_u64(seed);

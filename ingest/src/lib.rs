@@ -15,6 +15,7 @@ pub mod mission;
 mod parse;
 mod quality;
 pub mod sample;
+mod scan;
 mod segments;
 mod telemetry;
 mod walk;

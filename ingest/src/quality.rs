@@ -4,7 +4,7 @@ use chrono::{DateTime, Utc};
 use std::fmt;
 
 use crate::FileStamp;
-use crate::telemetry::AMBIENT;
+use crate::telemetry::{AMBIENT, POWER, SPEED};
 
 /// What a file holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -247,9 +247,9 @@ impl FileRecord {
     #[must_use]
     pub fn replaced(&self) -> Option<&Finding> {
         let replaced = |f: &&Finding| {
-            // The ambient temperature of the bus is checked, not used.
+            // What no sample is computed from is missing then.
             matches!(f.kind, FindingKind::RefusedValue | FindingKind::OutOfRange)
-                && f.column.as_deref() != Some(AMBIENT)
+                && !f.column.as_deref().is_some_and(|column| [AMBIENT, SPEED, POWER].contains(&column))
         };
         let is_used_mission = self.accepted && self.kind == FileKind::Mission;
         self.findings.iter().filter(|_| is_used_mission).find(replaced)

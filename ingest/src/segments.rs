@@ -20,8 +20,12 @@ pub(crate) struct Sums {
     pub door_seconds: i64,
     /// Seconds that a row stands for.
     pub observed_s: i64,
-    /// First and last row that lie in the segment.
-    pub rows: Option<(usize, usize)>,
+    /// Lines of the first and last row that lie in the segment.
+    pub lines: Option<(u64, u64)>,
+    /// Sum of the speeds in m/s, and of how many seconds.
+    pub speed: (f64, i64),
+    /// Sum of the powers in W, and of how many seconds.
+    pub power: (f64, i64),
 }
 
 /// State of the bus, held until a row changes it.
@@ -31,6 +35,15 @@ pub(crate) struct State {
     pub passengers: f64,
     /// Whether a door is open.
     pub door_open: bool,
+}
+
+/// What a row says of how the bus drives; NaN where it does not.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Drive {
+    /// Speed in m/s.
+    pub speed_m_s: f64,
+    /// Electric power in W.
+    pub power_w: f64,
 }
 
 /// Adds a mission up, row by row in rising time. The row at `t` stands for `[t, t + 1)`; where rows are missing the
@@ -69,15 +82,22 @@ impl Adder {
         self.state
     }
 
-    /// Adds the row number `row` of time `time_s`, within the clock's start and end.
-    pub fn add(&mut self, row: usize, time_s: i64, state: State) {
+    /// Adds the row of a time, on a line of the file, within the clock's start and end; says in which segment it lies.
+    pub fn add(&mut self, line: u64, time_s: i64, state: State, drive: Drive) -> usize {
         if time_s > self.at_s {
             self.advance(time_s, false);
         }
         self.state = state;
         self.advance(time_s + 1, true);
         let sums = &mut self.segments[self.segment];
-        sums.rows = Some(sums.rows.map_or((row, row), |(first, _)| (first, row)));
+        sums.lines = Some(sums.lines.map_or((line, line), |(first, _)| (first, line)));
+        // A row speaks of its own second; what is not known of it is not held.
+        for (sum, value) in [(&mut sums.speed, drive.speed_m_s), (&mut sums.power, drive.power_w)] {
+            if !value.is_nan() {
+                *sum = (sum.0 + value, sum.1 + 1);
+            }
+        }
+        self.segment
     }
 
     /// The sums of all segments.

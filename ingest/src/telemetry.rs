@@ -1,27 +1,29 @@
-//! The columns of a mission file that the samples need, read with polars.
-
-use polars::prelude::{
-    ChunkedArray, CsvEncoding, CsvParseOptions, CsvReadOptions, DataFrame, DataType, Field, Float64Chunked,
-    Int64Chunked, IntoColumn, NewChunkedArray, PlSmallStr, PolarsNumericType, PolarsResult, Schema, SerReader,
-};
-use std::io::Cursor;
-use std::sync::Arc;
+//! The columns of a ZTBus mission file that are read, row by row.
 
 use crate::files::{check_lines, check_text, find_columns};
 use crate::parse;
+use crate::scan::Scanner;
 use crate::{Finding, FindingKind};
 
 pub(crate) const TIME: &str = "time_unix";
 pub(crate) const PASSENGERS: &str = "itcs_numberOfPassengers";
 pub(crate) const DOOR: &str = "status_doorIsOpen";
 pub(crate) const AMBIENT: &str = "temperature_ambient";
+pub(crate) const SPEED: &str = "odometry_vehicleSpeed";
+pub(crate) const POWER: &str = "electric_powerDemand";
+pub(crate) const ROUTE: &str = "itcs_busRoute";
+/// Without these there is no sample.
+const NEEDED: [&str; 4] = [TIME, PASSENGERS, DOOR, AMBIENT];
+/// In the order of [`Row`].
+const COLUMNS: [&str; 7] = [TIME, PASSENGERS, DOOR, AMBIENT, SPEED, POWER, ROUTE];
 /// Three rows a second of the longest mission.
 const MOST_ROWS: usize = 3 * 7 * 86_400;
-const COLUMNS: [&str; 4] = [TIME, PASSENGERS, DOOR, AMBIENT];
 
 /// One row of telemetry. `None` is what cannot be read, NaN what is missing.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Row {
+pub(crate) struct Row<'b> {
+    /// Where it stands in the file; the header is line 1.
+    pub line: u64,
     /// Seconds since 1970.
     pub time_s: Option<i64>,
     /// Passengers on board, known when leaving a stop.
@@ -30,144 +32,104 @@ pub(crate) struct Row {
     pub door: Option<f64>,
     /// Ambient temperature in K.
     pub ambient_k: Option<f64>,
+    /// Speed of the bus in m/s.
+    pub speed_m_s: Option<f64>,
+    /// Electric power that the bus takes from its supplies in W.
+    pub power_w: Option<f64>,
+    /// Route; empty where there is none.
+    pub route: &'b [u8],
 }
 
 /// The telemetry of one mission.
-pub(crate) struct Telemetry {
-    frame: DataFrame,
-    lines: Lines,
+pub(crate) struct Telemetry<'b> {
+    bytes: &'b [u8],
+    places: [Option<usize>; COLUMNS.len()],
 }
 
-/// Where rows stand in the file.
-enum Lines {
-    /// Row `i` stands on line `i + 2`.
-    Plain,
-    /// Line breaks in quotes: the line of every row.
-    Listed(Vec<u64>),
-}
-
-impl Telemetry {
-    /// Reads the content of a mission file.
-    pub fn read(bytes: &[u8]) -> Result<Self, Finding> {
+impl<'b> Telemetry<'b> {
+    /// Reads the header of a mission file.
+    pub fn read(bytes: &'b [u8]) -> Result<Self, Finding> {
         check_text(bytes, true)?;
         check_lines(bytes, b',', MOST_ROWS)?;
         let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
         let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(bytes);
         let header = reader.headers().map_err(|e| not_csv(&e))?;
-        find_columns(header, &COLUMNS, ',')?;
+        find_columns(header, &NEEDED, ',')?;
+        let places = COLUMNS.map(|name| header.iter().position(|column| column.trim() == name));
+        Ok(Self { bytes, places })
+    }
 
-        let mut frame = scan(bytes).map_err(|e| not_csv(&e))?;
-        read_as_text(&mut frame, bytes).map_err(|e| not_csv(&e))?;
-        if frame.height() == 0 {
+    /// Calls `row` with every row, in order, and says how many there are.
+    ///
+    /// # Errors
+    /// A file without rows, or with a quote that never closes.
+    pub fn for_each(&self, mut row: impl FnMut(Row<'b>)) -> Result<u64, Finding> {
+        let mut scanner = Scanner::new(self.bytes, &self.places);
+        let mut count = 0;
+        let [mut ambient, mut speed, mut power] = [const { Last::NONE }; 3];
+        for record in &mut scanner {
+            let [time, passengers, door, ambient_k, speed_m_s, power_w, route] = record.fields;
+            count += 1;
+            row(Row {
+                line: record.line,
+                time_s: second(time),
+                passengers: if passengers == b"NaN" {
+                    Some(f64::NAN)
+                } else {
+                    text(passengers).and_then(parse::number)
+                },
+                door: match door {
+                    b"0" => Some(0.0),
+                    b"1" => Some(1.0),
+                    other => text(other).and_then(parse::flag),
+                },
+                ambient_k: ambient.number(ambient_k),
+                speed_m_s: speed.number(speed_m_s),
+                power_w: power.number(power_w),
+                route: if matches!(route, b"-" | b"NaN") { b"" } else { route },
+            });
+        }
+        if let Some(line) = scanner.bad_quote() {
+            let message =
+                "a quote never closes, or stands in a field that does not begin with one; export the file again";
+            return Err(Finding::whole(FindingKind::Unreadable, message).at_line(line));
+        }
+        if count == 0 {
             return Err(Finding::whole(FindingKind::Empty, "there are no rows below the header").at_line(2));
         }
-        let newlines = memchr::memchr_iter(b'\n', bytes).count() - usize::from(bytes.ends_with(b"\n"));
-        let lines = if newlines == frame.height() { Lines::Plain } else { Lines::Listed(list_lines(bytes)) };
-        Ok(Self { frame, lines })
+        Ok(count)
     }
+}
 
-    /// How many rows there are.
-    pub fn len(&self) -> usize {
-        self.frame.height()
-    }
+/// The last number of a column: many stay for seconds.
+struct Last<'b> {
+    text: &'b [u8],
+    number: Option<f64>,
+}
 
-    /// Calls `row` with every row, in order.
-    pub fn for_each(&self, mut row: impl FnMut(usize, Row)) {
-        let [time, passengers, door, ambient] = COLUMNS.map(|name| {
-            let column = self.frame.column(name).expect("the columns were asked for by name");
-            column.as_materialized_series()
-        });
-        let time = time.i64().expect("the schema sets the type");
-        let [passengers, door, ambient] =
-            [passengers, door, ambient].map(|s| s.f64().expect("the schema sets the type"));
-        let columns = values(time).zip(values(passengers)).zip(values(door)).zip(values(ambient));
-        for (i, (((time_s, passengers), door), ambient_k)) in columns.enumerate() {
-            row(i, Row { time_s, passengers, door, ambient_k });
+impl<'b> Last<'b> {
+    const NONE: Self = Self { text: b"", number: Some(f64::NAN) };
+
+    fn number(&mut self, text: &'b [u8]) -> Option<f64> {
+        if self.text != text {
+            *self = Self { text, number: self::text(text).and_then(parse::number) };
         }
-    }
-
-    /// Line of a row in the file.
-    pub fn line(&self, row: usize) -> u64 {
-        match &self.lines {
-            Lines::Plain => row as u64 + 2,
-            Lines::Listed(lines) => lines.get(row).copied().unwrap_or(row as u64 + 2),
-        }
+        self.number
     }
 }
 
-fn values<T: PolarsNumericType>(column: &ChunkedArray<T>) -> impl Iterator<Item = Option<T::Native>> + '_ {
-    column.downcast_iter().flat_map(|chunk| chunk.iter().map(|v| v.copied()))
+/// Ten digits, as nearly all are; else as [`parse::second`] reads them.
+fn second(field: &[u8]) -> Option<i64> {
+    let digit = |sum: Option<i64>, byte: &u8| match byte {
+        b'0'..=b'9' => sum.map(|sum| 10 * sum + i64::from(byte - b'0')),
+        _ => None,
+    };
+    let plain = if field.len() == 10 { field.iter().fold(Some(0), digit) } else { None };
+    plain.or_else(|| parse::second(text(field)?))
 }
 
-fn scan(bytes: &[u8]) -> PolarsResult<DataFrame> {
-    let types = [
-        (TIME, DataType::Int64),
-        (PASSENGERS, DataType::Float64),
-        (DOOR, DataType::Float64),
-        (AMBIENT, DataType::Float64),
-    ];
-    scan_columns(bytes, &types)
-}
-
-/// Reads columns with values that are no plain numbers once more, as text: empty fields are missing, and numbers and flags may
-/// be written as other tools write them.
-fn read_as_text(frame: &mut DataFrame, bytes: &[u8]) -> PolarsResult<()> {
-    let odd = |name: &&str| frame.column(name).is_ok_and(|column| column.null_count() > 0);
-    let odd: Vec<&'static str> = COLUMNS.into_iter().filter(odd).collect();
-    if odd.is_empty() {
-        return Ok(());
-    }
-    let types: Vec<(&'static str, DataType)> = odd.iter().map(|name| (*name, DataType::String)).collect();
-    let text = scan_columns(bytes, &types)?;
-    for name in odd {
-        let texts = text.column(name)?.as_materialized_series().str()?.iter().map(|t| t.map_or("", str::trim));
-        let column = match name {
-            TIME => Int64Chunked::from_iter_options(name.into(), texts.map(parse::second)).into_column(),
-            DOOR => Float64Chunked::from_iter_options(name.into(), texts.map(parse::flag)).into_column(),
-            _ => Float64Chunked::from_iter_options(name.into(), texts.map(parse::number)).into_column(),
-        };
-        frame.with_column(column)?;
-    }
-    Ok(())
-}
-
-fn scan_columns(bytes: &[u8], types: &[(&'static str, DataType)]) -> PolarsResult<DataFrame> {
-    let types = types.iter().cloned();
-    let columns: Arc<[PlSmallStr]> = types.clone().map(|(name, _)| PlSmallStr::from_static(name)).collect();
-    let schema = Schema::from_iter(types.map(|(name, dtype)| Field::new(name.into(), dtype)));
-    // Missions are read side by side, so one of them takes one thread.
-    CsvReadOptions::default()
-        .with_columns(Some(columns))
-        .with_schema_overwrite(Some(Arc::new(schema)))
-        .with_infer_schema_length(Some(0))
-        .with_n_threads(Some(1))
-        .with_rechunk(false)
-        .with_ignore_errors(true)
-        .with_raise_if_empty(false)
-        .with_parse_options(
-            CsvParseOptions::default().with_truncate_ragged_lines(true).with_encoding(CsvEncoding::LossyUtf8),
-        )
-        .into_reader_with_file_handle(Cursor::new(bytes))
-        .finish()
-}
-
-/// The line on which every record begins, the header's left out. A line break in quotes belongs to its record; a blank
-/// line is a record without values, as polars takes it.
-fn list_lines(bytes: &[u8]) -> Vec<u64> {
-    let (mut lines, mut line, mut quoted) = (Vec::new(), 1, false);
-    for byte in bytes {
-        match byte {
-            b'"' => quoted = !quoted,
-            b'\n' => {
-                line += 1;
-                if !quoted {
-                    lines.push(line);
-                }
-            }
-            _ => {}
-        }
-    }
-    lines
+fn text(field: &[u8]) -> Option<&str> {
+    std::str::from_utf8(field).ok().map(str::trim)
 }
 
 fn not_csv(error: &dyn std::error::Error) -> Finding {

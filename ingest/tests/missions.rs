@@ -309,4 +309,10 @@ fn xval_python_the_real_mission_has_the_rows_and_door_seconds_that_python_counts
     for (segment, open_s) in reading.segments.iter().zip([702.0, 1077.0, 1158.0]) {
         assert!((segment.door_open_fraction - 0.6 * open_s / 3600.0).abs() < 1e-12, "{segment:?}");
     }
+    // metaData.csv of ZTBus: distance and energy of the mission, by its authors.
+    let distance_m: f64 = reading.segments.iter().map(|s| s.distance_m.unwrap()).sum();
+    let energy_j: f64 = reading.segments.iter().map(|s| s.vehicle_power_w.unwrap() * f64::from(s.duration_s)).sum();
+    assert!((distance_m / 48_274.1 - 1.0).abs() < 0.002, "{distance_m}");
+    assert!((energy_j / 2.13587e8 - 1.0).abs() < 0.002, "{energy_j}");
+    assert_eq!(reading.segments[1].route.as_deref(), Some("83"));
 }

@@ -1,5 +1,5 @@
-//! Telemetry rows per second, from bytes to segments, by the number of missions that are read at a time; polars
-//! takes all cores.
+//! Telemetry rows per second, from bytes to segments, by the number of missions that are read at a time; and the same
+//! columns read by polars alone, without hashing, checks and sums.
 //!
 //! Reads the real mission under `$BUSCLIMATE_DATA` or `../shared/data`, many times over; nothing is measured without it.
 
@@ -7,7 +7,10 @@ use divan::counter::ItemsCount;
 use ingest::FileReader;
 use ingest::mission::{MissionOptions, discover, read};
 use pipeline::in_order;
+use polars::prelude::{CsvReadOptions, DataType, Field, PlSmallStr, Schema, SerReader};
+use std::io::Cursor;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// The allocator of the program.
 #[global_allocator]
@@ -43,5 +46,37 @@ fn real_mission(bencher: divan::Bencher, readers: usize) {
             Ok::<(), std::convert::Infallible>(())
         };
         in_order(&[(); COPIES], readers, read, sum).map(|()| segments)
+    });
+}
+
+#[divan::bench(args = [1, 2], sample_count = 20)]
+fn polars_alone(bencher: divan::Bencher, readers: usize) {
+    let Ok(found) = discover(&data(), "ztbus", &[183]) else { return };
+    let rows = (found.missions[0].end - found.missions[0].start).num_seconds() + 1;
+    let content = found.missions[0].load(&mut FileReader::default()).expect("the mission is readable");
+    let columns = [
+        ("time_unix", DataType::Int64),
+        ("itcs_numberOfPassengers", DataType::Float64),
+        ("status_doorIsOpen", DataType::Float64),
+        ("temperature_ambient", DataType::Float64),
+        ("odometry_vehicleSpeed", DataType::Float64),
+        ("electric_powerDemand", DataType::Float64),
+        ("itcs_busRoute", DataType::String),
+    ];
+    let names: Arc<[PlSmallStr]> = columns.iter().map(|(name, _)| PlSmallStr::from_static(name)).collect();
+    let schema = Schema::from_iter(columns.iter().map(|(name, dtype)| Field::new((*name).into(), dtype.clone())));
+    let options = CsvReadOptions::default()
+        .with_columns(Some(names))
+        .with_schema_overwrite(Some(Arc::new(schema)))
+        .with_infer_schema_length(Some(0))
+        .with_n_threads(Some(1))
+        .with_rechunk(false)
+        .with_ignore_errors(true);
+    bencher.counter(ItemsCount::new(COPIES * rows as usize)).bench(|| {
+        let read = |(): &mut (), (): &()| {
+            let reader = options.clone().into_reader_with_file_handle(Cursor::new(content.bytes.as_slice()));
+            reader.finish().expect("polars reads it").height()
+        };
+        in_order(&[(); COPIES], readers, read, |_| Ok::<(), std::convert::Infallible>(()))
     });
 }

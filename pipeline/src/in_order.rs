@@ -8,7 +8,7 @@ use std::sync::mpsc;
 /// thread keeps a value of its own, such as a buffer, from item to item; it starts as the default. Ends early, with the
 /// error, where `take` fails.
 ///
-/// Plain threads, not rayon's: a rayon worker that waits for another pool, such as that of polars, starts on the next
+/// Plain threads, not rayon's: a rayon worker that waits, such as for memory, starts on the next
 /// item meanwhile, and then every file is in memory at once.
 ///
 /// # Errors

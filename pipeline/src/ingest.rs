@@ -13,7 +13,7 @@ use crate::inputs::{Inputs, refusal_key};
 use crate::missing::Gone;
 use crate::{PipelineError, Progress, Work, freshness};
 
-/// Missions that are read at a time, per thread: while one is hashed and taken in, polars parses another.
+/// Missions that are read at a time, per thread: while one is taken in, another is parsed.
 const READERS_A_THREAD: usize = 2;
 
 /// What is recorded of a mission that is not there.

@@ -94,6 +94,9 @@ async fn insert_segment(c: &mut SqliteConnection, file: i64, s: &Segment) -> Res
         .set("duration_s", s.duration_s)?
         .set("passengers", s.passengers)?
         .set("door_open_fraction", s.door_open_fraction)?
+        .set("distance_m", s.distance_m)?
+        .set("vehicle_power_w", s.vehicle_power_w)?
+        .set("route", s.route.as_deref())?
         .set("first_line", s.first_line.cast_signed())?
         .set("last_line", s.last_line.cast_signed())?
         .execute(c)
@@ -125,6 +128,9 @@ pub(crate) fn segment(r: &SqliteRow) -> Result<Segment, sqlx::Error> {
         duration_s: r.try_get("duration_s")?,
         passengers: r.try_get("passengers")?,
         door_open_fraction: r.try_get("door_open_fraction")?,
+        distance_m: r.try_get("distance_m")?,
+        vehicle_power_w: r.try_get("vehicle_power_w")?,
+        route: r.try_get("route")?,
         first_line: count(r, "first_line")?,
         last_line: count(r, "last_line")?,
     })

@@ -169,7 +169,9 @@ pub(crate) fn sample(r: &SqliteRow) -> Result<Sample, sqlx::Error> {
 }
 
 async fn stored_samples(c: &mut SqliteConnection, damage: Damage<'_>) -> Result<BTreeMap<i64, Sample>, StoreError> {
-    let sql = "SELECT s.*, f.path AS source_path FROM hourly_sample AS s JOIN source_file AS f USING (source_file_id)";
+    let sql = "SELECT s.*, f.path AS source_path, g.distance_m, g.vehicle_power_w, g.route
+        FROM hourly_sample AS s JOIN source_file AS f USING (source_file_id)
+        LEFT JOIN mission_segment AS g ON g.source_file_id = s.source_file_id AND g.segment = s.segment";
     let rows = sqlx::query(sql).fetch_all(c).await?;
     whole(damage, "hourly_sample", &rows)?;
     rows.iter().map(sample).map(|s| s.map(|s| (s.id, s)).map_err(StoreError::from)).collect()

@@ -10,7 +10,7 @@ use crate::Study;
 use crate::file::StudyFile;
 
 /// Version of the readers: it changes whenever a file would be read differently.
-pub const READER_VERSION: u32 = 4;
+pub const READER_VERSION: u32 = 5;
 
 /// BLAKE3 over parts, each with its length, so that no two lists of parts give the same bytes.
 #[must_use]

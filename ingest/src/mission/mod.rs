@@ -9,7 +9,7 @@ use chrono::{DateTime, TimeDelta, Utc};
 use crate::segments::{Clock, Sums};
 use crate::telemetry::{TIME, Telemetry};
 use crate::{Content, ExcludedSegment, ExclusionReason, FileKind, FileRecord, Finding, FindingKind};
-use rows::Reader;
+use rows::{Reader, Routes};
 
 pub use discover::{Discovery, MissionSource, discover, mission_name, overlaps, span_of_name};
 
@@ -46,6 +46,12 @@ pub struct Segment {
     pub passengers: f64,
     /// Mean fraction of the doors that is open.
     pub door_open_fraction: f64,
+    /// Distance in m; `None` where more than 1 % of the seconds have no speed.
+    pub distance_m: Option<f64>,
+    /// Mean electric power that the bus takes from its supplies in W; `None` where more than 1 % of the seconds have none.
+    pub vehicle_power_w: Option<f64>,
+    /// The route of most seconds; `None` where the bus is on none.
+    pub route: Option<String>,
     /// First line of the mission file that belongs to it; the header is line 1.
     pub first_line: u64,
     /// Last line.
@@ -84,19 +90,18 @@ pub fn read(source: &MissionSource, content: &Content, options: &MissionOptions)
         let file = FileRecord::refused(&source.path, FileKind::Mission, &content.blake3, bytes, finding);
         MissionReading::refused(file.stamped(content.stamp))
     };
-    let telemetry = match Telemetry::read(&content.bytes) {
-        Ok(telemetry) => telemetry,
-        Err(finding) => return refused(finding),
-    };
     let clock = Clock {
         start_s: source.start.timestamp(),
         end_s: source.end.timestamp() + 1,
         segment_s: i64::from(options.segment_s),
     };
     let mut reader = Reader::new(clock);
-    telemetry.for_each(|i, row| reader.take(i, row));
-    let Reader { adder, notes, span, loads, .. } = reader;
-    if let Some(finding) = notes.refusal(&telemetry, &content.bytes) {
+    let rows = match Telemetry::read(&content.bytes).and_then(|telemetry| telemetry.for_each(|row| reader.take(row))) {
+        Ok(rows) => rows,
+        Err(finding) => return refused(finding),
+    };
+    let Reader { adder, notes, span, last_line, loads, routes, .. } = reader;
+    if let Some(finding) = notes.refusal(rows, &content.bytes) {
         return refused(finding);
     }
     let Some((first_s, last_s)) = span else {
@@ -105,23 +110,22 @@ pub fn read(source: &MissionSource, content: &Content, options: &MissionOptions)
         return refused(Finding::whole(FindingKind::RefusedRow, message).in_column(TIME));
     };
 
-    let mut findings = notes.findings(&telemetry, &content.bytes, last_s);
+    let mut findings = notes.findings(&content.bytes, last_s);
     if last_s + 1 < clock.end_s {
         let message = format!(
             "the telemetry ends {} s before the file's name says; whole segments are kept: fetch the file again",
             clock.end_s - 1 - last_s
         );
-        let line = telemetry.line(telemetry.len() - 1);
-        findings.push(Finding::whole(FindingKind::Truncated, message).at_line(line));
+        findings.push(Finding::whole(FindingKind::Truncated, message).at_line(last_line));
     }
-    let (segments, excluded) = segments(source, clock, options, &adder.finish(), &telemetry);
+    let (segments, excluded) = segments(source, clock, options, &adder.finish(), &routes);
     let time = |seconds| DateTime::from_timestamp(seconds, 0);
     let file = FileRecord {
         path: source.path.clone(),
         kind: FileKind::Mission,
         blake3: content.blake3.clone(),
         bytes,
-        rows: telemetry.len() as u64,
+        rows,
         first: time(first_s),
         last: time(last_s),
         stamp: content.stamp,
@@ -136,7 +140,7 @@ fn segments(
     clock: Clock,
     options: &MissionOptions,
     sums: &[Sums],
-    telemetry: &Telemetry,
+    routes: &Routes<'_>,
 ) -> (Vec<Segment>, Vec<ExcludedSegment>) {
     let (mut kept, mut excluded) = (Vec::new(), Vec::new());
     for (number, sums) in sums.iter().enumerate() {
@@ -151,7 +155,12 @@ fn segments(
         } else {
             None
         };
-        match (reason, sums.rows) {
+        // Of the sum, where nearly all seconds have a value.
+        let mean = |(sum, seconds): (f64, i64)| {
+            let missing = (duration_s - seconds) as f64;
+            (seconds > 0 && missing <= MAX_MISSING_SHARE * duration_s as f64).then(|| sum / seconds as f64)
+        };
+        match (reason, sums.lines) {
             (None, Some((first, last))) => kept.push(Segment {
                 mission: source.name.clone(),
                 source_path: source.path.clone(),
@@ -161,8 +170,11 @@ fn segments(
                 duration_s: duration_s as u32,
                 passengers: sums.passenger_seconds / duration_s as f64,
                 door_open_fraction: sums.door_seconds as f64 / duration_s as f64 * options.door_open_share,
-                first_line: telemetry.line(first),
-                last_line: telemetry.line(last),
+                distance_m: mean(sums.speed).map(|speed_m_s| speed_m_s * duration_s as f64),
+                vehicle_power_w: mean(sums.power),
+                route: routes.of(number),
+                first_line: first,
+                last_line: last,
             }),
             (reason, _) => excluded.push(ExcludedSegment {
                 mission: source.name.clone(),

@@ -3,8 +3,8 @@
 use cabin::LoadChange;
 
 use crate::parse::likely_cause;
-use crate::segments::{Adder, Clock};
-use crate::telemetry::{AMBIENT, DOOR, PASSENGERS, Row, TIME, Telemetry};
+use crate::segments::{Adder, Clock, Drive};
+use crate::telemetry::{AMBIENT, DOOR, PASSENGERS, POWER, Row, SPEED, TIME};
 use crate::{Finding, FindingKind};
 
 /// Largest believable number of passengers: an articulated bus holds about 150.
@@ -15,6 +15,11 @@ const MAX_DRIFT: f64 = 10.0;
 const MAX_UNUSABLE_SHARE: f64 = 0.1;
 /// So few say nothing of the column, where others can be used.
 const FEW_UNUSABLE: u64 = 5;
+/// Believable speeds, of a bus that rolls back as well, and powers of one that drives or brakes.
+const SPEEDS_M_S: (f64, f64) = (-5.0, 50.0);
+const POWERS_W: (f64, f64) = (-2e6, 2e6);
+/// A route's name in characters.
+const LONGEST_ROUTE: usize = 40;
 /// Below this a temperature in K is one in °C.
 const COLDEST_K: f64 = 150.0;
 
@@ -22,13 +27,13 @@ const COLDEST_K: f64 = 150.0;
 #[derive(Debug, Clone, Copy, Default)]
 struct Note {
     count: u64,
-    row: Option<usize>,
+    line: Option<u64>,
 }
 
 impl Note {
-    fn at(&mut self, row: usize) {
+    fn at(&mut self, line: u64) {
         self.count += 1;
-        self.row.get_or_insert(row);
+        self.line.get_or_insert(line);
     }
 }
 
@@ -51,24 +56,84 @@ pub(super) struct Notes {
     last_missing_door_s: i64,
     unreadable_ambient: Note,
     celsius: Note,
+    unreadable_speed: Note,
+    impossible_speed: Note,
+    unreadable_power: Note,
+    impossible_power: Note,
 }
 
-pub(super) struct Reader {
+/// A value that lies where it can; NaN for others, which are noted.
+fn known(value: Option<f64>, range: (f64, f64), line: u64, unreadable: &mut Note, impossible: &mut Note) -> f64 {
+    match value {
+        Some(value) if value.is_nan() || (range.0..=range.1).contains(&value) => value,
+        Some(_) => {
+            impossible.at(line);
+            f64::NAN
+        }
+        None => {
+            unreadable.at(line);
+            f64::NAN
+        }
+    }
+}
+
+/// How many seconds of each segment the bus is on which route.
+#[derive(Debug, Default)]
+pub(super) struct Routes<'b> {
+    /// Runs of rows: segment, route, how many.
+    runs: Vec<(usize, &'b [u8], u64)>,
+}
+
+impl<'b> Routes<'b> {
+    fn add(&mut self, segment: usize, route: &'b [u8]) {
+        match self.runs.last_mut() {
+            Some((last, same, count)) if *last == segment && *same == route => *count += 1,
+            _ => self.runs.push((segment, route, 1)),
+        }
+    }
+
+    /// The route of most seconds of a segment, the first of equals; `None` where no second has one.
+    pub fn of(&self, segment: usize) -> Option<String> {
+        let mut seconds: Vec<(&[u8], u64)> = Vec::new();
+        for (_, route, count) in self.runs.iter().filter(|(s, route, _)| *s == segment && !route.is_empty()) {
+            match seconds.iter_mut().find(|(same, _)| same == route) {
+                Some((_, sum)) => *sum += count,
+                None => seconds.push((route, *count)),
+            }
+        }
+        let most = seconds.iter().map(|(_, sum)| *sum).max()?;
+        let (route, _) = seconds.iter().find(|(_, sum)| *sum == most)?;
+        Some(String::from_utf8_lossy(route).trim().chars().take(LONGEST_ROUTE).collect())
+    }
+}
+
+pub(super) struct Reader<'b> {
     clock: Clock,
     pub adder: Adder,
     pub notes: Notes,
-    /// First and last second that has a row.
+    /// First and last second that has a row, and the line of the last row at all.
     pub span: Option<(i64, i64)>,
+    pub last_line: u64,
     pub loads: Vec<LoadChange>,
+    pub routes: Routes<'b>,
 }
 
-impl Reader {
+impl<'b> Reader<'b> {
     pub fn new(clock: Clock) -> Self {
-        Self { clock, adder: Adder::new(clock), notes: Notes::default(), span: None, loads: Vec::new() }
+        Self {
+            clock,
+            adder: Adder::new(clock),
+            notes: Notes::default(),
+            span: None,
+            last_line: 1,
+            loads: Vec::new(),
+            routes: Routes::default(),
+        }
     }
 
-    pub fn take(&mut self, i: usize, row: Row) {
-        let notes = &mut self.notes;
+    pub fn take(&mut self, row: Row<'b>) {
+        let (i, notes) = (row.line, &mut self.notes);
+        self.last_line = i;
         let Some(time_s) = row.time_s else { return notes.unreadable_time.at(i) };
         if time_s < self.clock.start_s || time_s >= self.clock.end_s {
             return notes.outside.at(i);
@@ -115,15 +180,19 @@ impl Reader {
             let second = (time_s - self.clock.start_s) as u32;
             self.loads.push(LoadChange { second, passengers: state.passengers, door_open: state.door_open });
         }
-        self.adder.add(i, time_s, state);
+        let drive = Drive {
+            speed_m_s: known(row.speed_m_s, SPEEDS_M_S, i, &mut notes.unreadable_speed, &mut notes.impossible_speed),
+            power_w: known(row.power_w, POWERS_W, i, &mut notes.unreadable_power, &mut notes.impossible_power),
+        };
+        let segment = self.adder.add(i, time_s, state, drive);
+        self.routes.add(segment, row.route);
         self.span = Some((self.span.map_or(time_s, |(first, _)| first), time_s));
     }
 }
 
 impl Notes {
     /// Why a mission of so many rows is refused: a needed column that is mostly unusable.
-    pub fn refusal(&self, telemetry: &Telemetry, bytes: &[u8]) -> Option<Finding> {
-        let rows = telemetry.len() as u64;
+    pub fn refusal(&self, rows: u64, bytes: &[u8]) -> Option<Finding> {
         let columns = [
             (TIME, self.unreadable_time, Note::default(), rows),
             (PASSENGERS, self.unreadable_passengers, self.impossible_passengers, rows - self.missing_passengers),
@@ -135,7 +204,7 @@ impl Notes {
             if few || unusable as f64 <= MAX_UNUSABLE_SHARE * values as f64 {
                 return None;
             }
-            let line = telemetry.line(unreadable.row.or(impossible.row)?);
+            let line = unreadable.line.or(impossible.line)?;
             let text = text_at(bytes, line, column).unwrap_or_default();
             let message = format!(
                 "{text:?}: {unusable} of {values} values cannot be used, more than {:.0} %; probably {}",
@@ -146,7 +215,7 @@ impl Notes {
         })
     }
 
-    pub fn findings(mut self, telemetry: &Telemetry, bytes: &[u8], last_s: i64) -> Vec<Finding> {
+    pub fn findings(mut self, bytes: &[u8], last_s: i64) -> Vec<Finding> {
         use FindingKind::{
             DuplicateRow, MissingValue, NegativeOffset, OutOfRange, RefusedRow, RefusedValue, TimeGap, WrongUnit,
         };
@@ -155,7 +224,7 @@ impl Notes {
             self.missing_door = Note::default();
         }
         let gaps = format!("{} s without a row; the state before holds", self.gap_seconds);
-        let notes: [(Note, FindingKind, &str, &str); 13] = [
+        let notes: [(Note, FindingKind, &str, &str); 17] = [
             (self.unreadable_time, RefusedRow, TIME, "not a whole number of seconds since 1970; correct the rows"),
             (self.outside, RefusedRow, TIME, "outside the span that the file's name says; correct rows or name"),
             (self.backwards, RefusedRow, TIME, "time runs backwards; sort the file by time"),
@@ -173,11 +242,14 @@ impl Notes {
             (self.impossible_door, OutOfRange, DOOR, "not 0, 1 or NaN; the last state holds"),
             (self.missing_door, MissingValue, DOOR, "no state; the last one holds"),
             (self.unreadable_ambient, RefusedValue, AMBIENT, "not a number; the column is checked, not used"),
+            (self.unreadable_speed, RefusedValue, SPEED, "not a number; taken as missing"),
+            (self.impossible_speed, OutOfRange, SPEED, "outside -5 … 50 m/s; taken as missing"),
+            (self.unreadable_power, RefusedValue, POWER, "not a number; taken as missing"),
+            (self.impossible_power, OutOfRange, POWER, "outside -2 … 2 MW; taken as missing"),
             (self.celsius, WrongUnit, AMBIENT, "below 150 K, probably in °C; the column is checked, not used"),
         ];
         let noticed = notes.into_iter().filter_map(|(note, kind, column, message)| {
-            let row = note.row?;
-            let line = telemetry.line(row);
+            let line = note.line?;
             let text = match kind {
                 RefusedRow | RefusedValue | OutOfRange | WrongUnit | NegativeOffset => {
                     match text_at(bytes, line, column) {

@@ -1,0 +1,295 @@
+//! The fields of a few columns of comma-separated values, record by record, out of bytes that are in memory. Nothing is
+//! copied: a mission has some ten thousand records of 26 columns, of which seven are asked for.
+//!
+//! Separators are found 64 bytes at a time: a comparison gives a bit for each byte, and the exclusive or of all quotes up to a
+//! byte says whether it stands in quotes (Langdale and Lemire 2019, doi 10.1007/s00778-019-00578-5).
+
+use wide::u8x16;
+
+const BLOCK: usize = 64;
+/// Separators that are looked for at a time.
+const BATCH: usize = 4096;
+
+/// Records below a header.
+pub(crate) struct Scanner<'b, const N: usize> {
+    bytes: &'b [u8],
+    /// The wanted column of each wanted field.
+    places: [Option<usize>; N],
+    /// Where the next block begins.
+    at: usize,
+    /// All ones inside quotes.
+    inside: u64,
+    /// Whether a separator stands before the block.
+    after_separator: bool,
+    /// Separators that have been found, those of records that are done first.
+    separators: Vec<usize>,
+    /// Places in `separators` of those that end records.
+    ends: Vec<usize>,
+    /// Whether there are line breaks in quotes.
+    has_inner: bool,
+    /// How many separators and ends are done.
+    done: [usize; 2],
+    /// Where the next record begins, and on which line.
+    start: usize,
+    line: u64,
+    quotes: Quotes,
+}
+
+/// What is wrong with quotes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Quotes {
+    Fine,
+    /// Inside quotes that opened at a byte.
+    Open(usize),
+    /// One stands in a field that does not begin with one.
+    Odd(usize),
+}
+
+/// A record: where it begins, and the wanted fields, as they stand there without their quotes. A column that the file or the
+/// record has not is empty.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Record<'b, const N: usize> {
+    pub line: u64,
+    pub fields: [&'b [u8]; N],
+}
+
+impl<'b, const N: usize> Scanner<'b, N> {
+    /// `places` are the positions of the wanted columns; the first record of `bytes` is the header.
+    pub fn new(bytes: &'b [u8], places: &[Option<usize>; N]) -> Self {
+        let mut scanner = Self {
+            bytes,
+            places: *places,
+            at: 0,
+            inside: 0,
+            after_separator: true,
+            separators: Vec::with_capacity(BATCH + BLOCK + 1),
+            ends: Vec::new(),
+            has_inner: false,
+            done: [0; 2],
+            start: 0,
+            line: 1,
+            quotes: Quotes::Fine,
+        };
+        scanner.next();
+        scanner
+    }
+
+    /// The line of a quote that never closes or stands where none can, once the records are through.
+    pub fn bad_quote(&self) -> Option<u64> {
+        let (Quotes::Open(at) | Quotes::Odd(at)) = self.quotes else { return None };
+        Some(1 + memchr::memchr_iter(b'\n', &self.bytes[..at]).count() as u64)
+    }
+
+    /// Finds more separators, until a record is whole; false where there are none.
+    #[cold]
+    fn find_more(&mut self) -> bool {
+        let [separators, ends] = self.done;
+        self.separators.drain(..separators);
+        self.ends.drain(..ends);
+        self.ends.iter_mut().for_each(|end| *end -= separators);
+        self.done = [0; 2];
+        while self.at < self.bytes.len() && (self.separators.len() < BATCH || self.ends.is_empty()) {
+            self.block();
+        }
+        if self.at >= self.bytes.len() && self.ends.is_empty() && self.start < self.bytes.len() {
+            // The last record need not end in a line break.
+            self.ends.push(self.separators.len());
+            self.separators.push(self.bytes.len());
+        }
+        !self.ends.is_empty()
+    }
+
+    fn block(&mut self) {
+        let mut padded = [0; BLOCK];
+        let rest = &self.bytes[self.at..];
+        let block: &[u8; BLOCK] = match rest.first_chunk() {
+            Some(block) => block,
+            None => {
+                padded[..rest.len()].copy_from_slice(rest);
+                &padded
+            }
+        };
+        let [commas, newlines, quotes] = [b',', b'\n', b'"'].map(|byte| equal(block, byte));
+        let before = self.inside;
+        let inside = prefix_xor(quotes) ^ before;
+        let separators = (commas | newlines) & !inside;
+        if quotes != 0 || before != 0 {
+            self.check_quotes(quotes, inside, separators);
+            self.has_inner |= newlines & inside != 0;
+        }
+        self.inside = if inside >> (BLOCK - 1) == 1 { u64::MAX } else { 0 };
+        self.after_separator = separators >> (BLOCK - 1) == 1;
+        let known = self.separators.len();
+        ones(newlines & !inside)
+            .for_each(|bit| self.ends.push(known + (separators & ((1 << bit) - 1)).count_ones() as usize));
+        self.separators.extend(ones(separators).map(|bit| self.at + bit));
+        self.at += BLOCK;
+    }
+
+    /// A quote that opens begins its field, or follows the one that seemed to close it.
+    fn check_quotes(&mut self, quotes: u64, inside: u64, separators: u64) {
+        let opens = quotes & inside;
+        let closes_before = (quotes & !inside) << 1;
+        let begins = (separators << 1) | u64::from(self.after_separator) | closes_before;
+        let first_may_follow = u64::from(self.at > 0 && self.bytes[self.at - 1] == b'"');
+        let odd = opens & !(begins | first_may_follow);
+        if let (Quotes::Fine | Quotes::Open(_), Some(bit)) = (self.quotes, ones(odd).next()) {
+            self.quotes = Quotes::Odd(self.at + bit);
+        }
+        if !matches!(self.quotes, Quotes::Odd(_)) && quotes != 0 {
+            let last = BLOCK - 1 - quotes.leading_zeros() as usize;
+            self.quotes = if inside >> (BLOCK - 1) == 1 { Quotes::Open(self.at + last) } else { Quotes::Fine };
+        }
+    }
+}
+
+impl<'b, const N: usize> Iterator for Scanner<'b, N> {
+    type Item = Record<'b, N>;
+
+    #[inline]
+    fn next(&mut self) -> Option<Record<'b, N>> {
+        if self.done[1] == self.ends.len() && !self.find_more() {
+            return None;
+        }
+        let (first, last) = (self.done[0], self.ends[self.done[1]]);
+        let end = self.separators[last];
+        let mut record = Record { line: self.line, fields: [b"".as_slice(); N] };
+        for (field, place) in record.fields.iter_mut().zip(self.places) {
+            let Some(separator) = place.map(|place| first + place).filter(|separator| *separator <= last) else {
+                continue;
+            };
+            let from = if separator == first { self.start } else { self.separators[separator - 1] + 1 };
+            *field = unquoted(&self.bytes[from..self.separators[separator]]);
+        }
+        self.line += 1;
+        if self.has_inner {
+            self.line += memchr::memchr_iter(b'\n', &self.bytes[self.start..end]).count() as u64;
+        }
+        self.start = end + 1;
+        self.done[0] = last + 1;
+        self.done[1] += 1;
+        Some(record)
+    }
+}
+
+/// A field without its quotes and without the `\r` of its line.
+#[inline]
+fn unquoted(field: &[u8]) -> &[u8] {
+    let field = field.strip_suffix(b"\r").unwrap_or(field);
+    match field {
+        [b'"', text @ .., b'"'] | [b'"', text @ ..] => text,
+        _ => field,
+    }
+}
+
+/// A bit for each byte that is equal.
+#[inline]
+fn equal(block: &[u8; BLOCK], byte: u8) -> u64 {
+    let wanted = u8x16::splat(byte);
+    let (lanes, _) = block.as_chunks::<16>();
+    let mask = |lane: usize| u64::from(u8x16::new(lanes[lane]).simd_eq(wanted).to_bitmask() as u16) << (16 * lane);
+    mask(0) | mask(1) | mask(2) | mask(3)
+}
+
+/// The exclusive or of all bits up to each.
+#[inline]
+fn prefix_xor(bits: u64) -> u64 {
+    [1, 2, 4, 8, 16, 32].into_iter().fold(bits, |bits, shift| bits ^ (bits << shift))
+}
+
+/// The places of the bits that are set.
+#[inline]
+fn ones(mut bits: u64) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let bit = (bits != 0).then(|| bits.trailing_zeros() as usize)?;
+        bits &= bits - 1;
+        Some(bit)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use polars::prelude::{CsvParseOptions, CsvReadOptions, SerReader};
+    use proptest::prelude::*;
+    use std::io::Cursor;
+    use std::path::PathBuf;
+
+    /// All fields of all records, by polars.
+    fn oracle(bytes: &[u8]) -> Vec<Vec<String>> {
+        let frame = CsvReadOptions::default()
+            .with_infer_schema_length(Some(0))
+            .with_parse_options(CsvParseOptions::default().with_missing_is_null(false))
+            .into_reader_with_file_handle(Cursor::new(bytes))
+            .finish()
+            .unwrap();
+        let text =
+            |column: &polars::prelude::Column, row: usize| column.str().unwrap().get(row).unwrap_or("").to_owned();
+        (0..frame.height()).map(|row| frame.columns().iter().map(|column| text(column, row)).collect()).collect()
+    }
+
+    fn scanned<const N: usize>(bytes: &[u8], places: [Option<usize>; N]) -> Vec<(u64, Vec<String>)> {
+        let text = |field: &&[u8]| String::from_utf8_lossy(field).replace("\"\"", "\"");
+        Scanner::new(bytes, &places).map(|r| (r.line, r.fields.iter().map(text).collect())).collect()
+    }
+
+    #[test]
+    fn xval_polars_the_real_mission_has_the_same_fields() {
+        let beside = || PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/data"));
+        let data = std::env::var_os("BUSCLIMATE_DATA").map_or_else(beside, PathBuf::from);
+        let Ok(bytes) = std::fs::read(data.join("ztbus/B183_2021-07-26_03-53-27_2021-07-26_07-18-47.csv")) else {
+            return;
+        };
+        let theirs = oracle(&bytes);
+        assert_eq!(theirs.len(), 12_321);
+        let places = [Some(1), Some(8), Some(19), Some(23), Some(12), Some(2), Some(7), None];
+        for (row, (line, ours)) in scanned(&bytes, places).into_iter().enumerate() {
+            let wanted = [1, 8, 19, 23, 12, 2, 7].map(|place: usize| theirs[row][place].clone());
+            assert_eq!((ours[..7].to_vec(), line), (wanted.to_vec(), row as u64 + 2));
+            assert_eq!(ours[7], "");
+        }
+    }
+
+    #[test]
+    fn prop_lines_count_right_and_a_quote_that_never_closes_is_known() {
+        let text = b"a,b,c\n1,\"x\n,\"\"y\"\"\",3\n4,5\n,,6\n7,\"8\n";
+        let places = [Some(2), Some(0)];
+        let expected: Vec<(u64, Vec<String>)> = [(2, ["3", "1"]), (4, ["", "4"]), (5, ["6", ""]), (6, ["", "7"])]
+            .map(|(line, fields)| (line, fields.map(str::to_owned).to_vec()))
+            .to_vec();
+        assert_eq!(scanned(text, places), expected);
+        let mut scanner = Scanner::new(text, &places);
+        assert_eq!((scanner.by_ref().count(), scanner.bad_quote()), (4, Some(6)));
+    }
+
+    proptest! {
+        #[test]
+        fn xval_polars_tables_have_the_same_fields(
+            rows in prop::collection::vec(prop::collection::vec("([a-z0-9.]{0,6}|\"[a-z,\n]{0,5}(\"\"[a-z]{0,3}\"\")?[a-z]{0,2}\")", 5), 1..20),
+            places in prop::array::uniform3(prop::option::of(0_usize..5)),
+            newline in prop_oneof![Just("\n"), Just("\r\n")],
+        ) {
+            let rows: Vec<String> = rows.iter().map(|row| format!("r,{}{newline}", row.join(","))).collect();
+            let text = format!("k,a,b,c,d,e{newline}{}", rows.concat());
+            let [a, b, c] = places;
+            let places = [a, b.filter(|_| b != a), c.filter(|_| c != a && c != b)];
+            let theirs = oracle(text.as_bytes());
+            let ours = scanned(text.as_bytes(), places.map(|place| place.map(|p| p + 1)));
+            prop_assert_eq!(ours.len(), theirs.len());
+            for ((_, ours), theirs) in ours.iter().zip(&theirs) {
+                for (field, place) in ours.iter().zip(places) {
+                    let wanted = place.map_or("", |place| &theirs[place + 1]);
+                    prop_assert_eq!(field.trim_end_matches('\r'), wanted);
+                }
+            }
+        }
+
+        #[test]
+        fn prop_any_bytes_end(bytes in prop::collection::vec(prop_oneof![Just(b'"'), Just(b','), Just(b'\n'), any::<u8>()], 0..300)) {
+            let newlines = bytes.iter().filter(|b| **b == b'\n').count() as u64;
+            for record in Scanner::new(&bytes, &[Some(0), Some(3)]) {
+                prop_assert!(record.line <= newlines + 1);
+            }
+        }
+    }
+}
