@@ -62,6 +62,8 @@ pub enum Command {
         /// Folder of the new study.
         dir: PathBuf,
     },
+    /// Download the missions and the weather that the section `fetch` of a study names; what was cut goes on from there.
+    Fetch(FetchArgs),
     /// Write the shadow file that a study names, computed for street canyons at its location.
     Canyon(CanyonArgs),
     /// Validate study and inputs without running; estimate points, time and size.
@@ -126,7 +128,8 @@ impl Command {
     pub fn can_stop(&self) -> bool {
         matches!(
             self,
-            Self::Ingest(_)
+            Self::Fetch(_)
+                | Self::Ingest(_)
                 | Self::Shade(_)
                 | Self::Solve(_)
                 | Self::Simulate(_)
@@ -176,6 +179,33 @@ impl From<Method> for solve::Method {
             Method::NlpSurrogate => Self::NlpSurrogate,
         }
     }
+}
+
+#[derive(Debug, ClapArgs)]
+pub struct FetchArgs {
+    #[command(flatten)]
+    pub study: StudyArgs,
+
+    /// Only the missions or only the weather.
+    #[arg(long, value_enum)]
+    pub only: Option<Inputs>,
+
+    /// Ask no server; only say what is there and what is missing.
+    #[arg(long)]
+    pub offline: bool,
+
+    /// How long to wait for a connection, an answer, or the next bytes.
+    #[arg(long, value_name = "SECONDS", default_value_t = 30, value_parser = clap::value_parser!(u64).range(1..))]
+    pub timeout: u64,
+}
+
+/// A kind of inputs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Inputs {
+    /// Telemetry.
+    Missions,
+    /// Weather.
+    Weather,
 }
 
 #[derive(Debug, ClapArgs)]

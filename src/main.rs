@@ -18,7 +18,7 @@ use std::time::{Duration, Instant};
 use args::{Args, Command, Log, StudyArgs};
 use console::{Console, say};
 use failure::{Ending, Failure};
-use pipeline::{Options, Part, Point, Stage};
+use pipeline::{Options, Part, Patience, Point, Stage, Wanted};
 use study::Study;
 
 /// Missions come and go as blocks of megabytes: the system's allocator gives them back to the kernel each time, which
@@ -62,6 +62,15 @@ fn dispatch(args: &Args, console: &Console) -> Result<Ending, Failure> {
         Command::Init { dir } => {
             prepare::init(dir)?;
             Ok(Ending::Done)
+        }
+        Command::Fetch(typed) => {
+            let wanted = match typed.only {
+                None => Wanted::All,
+                Some(args::Inputs::Missions) => Wanted::Missions,
+                Some(args::Inputs::Weather) => Wanted::Weather,
+            };
+            let patience = Patience { timeout: Duration::from_secs(typed.timeout), ..Patience::default() };
+            print::fetched(&pipeline::fetch(&open(&typed.study)?, wanted, patience, typed.offline, console)?)
         }
         Command::Canyon(canyon) => {
             let study = open(&canyon.study)?;

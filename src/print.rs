@@ -2,7 +2,7 @@
 
 use anyhow::anyhow;
 use cabin::celsius;
-use pipeline::{Check, Done, Point, Shown, Stage, StagePlan, Status, Verification, write_whole};
+use pipeline::{Check, Done, Fetched, FetchedFile, Point, Shown, Stage, StagePlan, Status, Verification, write_whole};
 use serde::Serialize;
 use solve::Method;
 use std::path::Path;
@@ -75,6 +75,32 @@ pub fn check(study: &Study, check: &Check) -> Result<Ending, Failure> {
         [] => Ok(Ending::of(check.refused.is_empty() && check.used.iter().all(|record| record.replaced().is_none()))),
         [one] => Err(Failure::Inputs(anyhow!("{one}"))),
         [first, ..] => Err(Failure::Inputs(anyhow!("{} errors, the first: {first}", check.errors.len()))),
+    }
+}
+
+/// What was fetched, or is to be.
+pub fn fetched(files: &[FetchedFile]) -> Result<Ending, Failure> {
+    let mut failed = Vec::new();
+    for FetchedFile { source, outcome } in files {
+        let to = source.to.display();
+        let there = source.to.metadata().map(|m| m.len());
+        match (outcome, there) {
+            (Some(Ok(Fetched::New(bytes))), _) => say(format_args!("fetched: {to}, {bytes} bytes"))?,
+            (Some(Ok(Fetched::Unchanged)), _) => say(format_args!("unchanged: {to}"))?,
+            (None, Ok(bytes)) => say(format_args!("there: {to}, {bytes} bytes"))?,
+            (Some(Err(error)), _) => failed.push(error.to_string()),
+            (None, Err(_)) => failed.push(format!("{to} is missing; it comes from {}", source.url)),
+        }
+    }
+    if files.is_empty() {
+        return Err(Failure::Usage(anyhow!(
+            "no addresses for this format of weather; name them as `weather` in [fetch]"
+        )));
+    }
+    failed.iter().for_each(|line| tracing::error!("{line}"));
+    match failed.len() {
+        0 => Ok(Ending::Done),
+        n => Err(Failure::Inputs(anyhow!("{n} of {} files are not there as they should be", files.len()))),
     }
 }
 

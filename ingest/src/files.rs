@@ -202,6 +202,14 @@ pub(crate) fn open_archive(path: &Path) -> Result<Archive, zip::result::ZipError
     ZipArchive::new(BufReader::new(File::open(path)?))
 }
 
+/// Whether a file is a whole zip archive.
+///
+/// # Errors
+/// What is wrong with it.
+pub fn check_archive(path: &Path) -> Result<(), String> {
+    open_archive(path).map(drop).map_err(|error| error.to_string())
+}
+
 /// What a path of the study names: all that lies in a folder, the matches of a glob, or one file; sorted.
 pub(crate) fn list(base: &Path, pattern: &str) -> Result<Vec<PathBuf>, IngestError> {
     let path = base.join(pattern);

@@ -21,7 +21,7 @@ mod telemetry;
 mod walk;
 pub mod weather;
 
-pub use files::{Content, FileReader, FileStamp, check_lines, write_whole};
+pub use files::{Content, FileReader, FileStamp, check_archive, check_lines, write_whole};
 pub use quality::{ExcludedSegment, ExclusionReason, FileKind, FileRecord, Finding, FindingKind};
 
 use std::path::PathBuf;

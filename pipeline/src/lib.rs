@@ -11,6 +11,7 @@ mod budget;
 mod canyon;
 mod check;
 mod error;
+mod fetch;
 mod files;
 mod folder;
 mod freshness;
@@ -36,6 +37,8 @@ mod status;
 mod traces;
 mod verify;
 
+pub use self::fetch::{FetchedFile, Wanted, fetch};
+pub use ::fetch::{FetchError, Fetched, Patience};
 pub use backup::backup;
 pub use canyon::write_canyon;
 pub use check::{Check, check};

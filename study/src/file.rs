@@ -29,6 +29,9 @@ pub struct StudyFile {
     pub missions: Missions,
     pub weather: Weather,
     pub shadow: Shadow,
+    // Where files were fetched from does not change what is in them.
+    #[serde(default, skip_serializing)]
+    pub fetch: Fetch,
     #[serde(default)]
     pub comfort: Comfort,
     #[serde(default)]
@@ -137,6 +140,16 @@ pub enum TimeLabel {
 #[serde(deny_unknown_fields)]
 pub struct Shadow {
     pub path: String,
+}
+
+/// Addresses that `busclimate fetch` downloads.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Fetch {
+    pub missions: Option<String>,
+    pub missions_bytes: Option<u64>,
+    pub missions_checksum: Option<String>,
+    pub weather: Option<Vec<String>>,
 }
 
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]

@@ -7,6 +7,7 @@ pub mod assumptions;
 mod file;
 pub mod keys;
 mod ready;
+mod sources;
 pub mod template;
 
 use cabin::{ComfortWindow, Vehicle};
@@ -20,6 +21,7 @@ use std::path::{Path, PathBuf};
 use store::DesignRow;
 
 pub use file::StudyFileError;
+pub use sources::Source;
 
 use file::StudyFile;
 
@@ -58,6 +60,10 @@ pub struct Study {
     pub expect_weather_within_h: Option<f64>,
     /// Where the shadow fractions are.
     pub shadow_path: String,
+    /// Where missions can be fetched from.
+    pub mission_sources: Vec<Source>,
+    /// Where weather can be fetched from.
+    pub weather_sources: Vec<Source>,
     /// Constants of the bus.
     pub vehicle: Vehicle,
     /// Constants of the simulation.
@@ -117,6 +123,7 @@ impl Study {
         let simulated = |w: &ComfortWindow| file.simulation.pmv_limits.contains(&w.pmv_limit());
         let simulated_windows = (0..grid.windows().len()).filter(|&i| simulated(&grid.windows()[i])).collect();
 
+        let [mission_sources, weather_sources] = sources::sources(file, &base)?;
         let study = Self {
             name: file.name.clone(),
             note: file.note.clone(),
@@ -134,6 +141,8 @@ impl Study {
             expect_missions_within_h: ready::expected_h("[missions]", file.missions.expect_newest_within_hours)?,
             expect_weather_within_h: ready::expected_h("[weather]", file.weather.expect_newest_within_hours)?,
             shadow_path: file.shadow.path.clone(),
+            mission_sources,
+            weather_sources,
             vehicle: file.vehicle.clone(),
             dynamics: file.dynamics,
             simulated_windows,

@@ -83,6 +83,7 @@ pub fn render(template: &Template) -> String {
     include_str!("template.toml")
         .replace("@FORMAT@", format)
         .replace("@MAP@", map)
+        .replace("@ZTBUS@", crate::sources::ZTBUS)
         .replace("@NAME@", &quoted(template.name))
         .replace("@NOTE@", &note)
         .replace("@BUSES@", &format!("{:?}", template.buses))

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use super::WeatherFormat;
 use super::format::Format;
-use crate::files::extension;
-use crate::walk::{Found, walk};
+use crate::files::{check_archive, extension};
+use crate::walk::{Found, Place, walk};
 use crate::{FileKind, FileRecord, FileStamp, IngestError};
 
 /// Extensions of weather files in a folder or an archive.
@@ -69,6 +69,26 @@ pub fn discover(base: &Path, pattern: &str, format: &WeatherFormat) -> Result<We
         return Err(IngestError::Weather { path: place, reason });
     }
     Ok(WeatherFiles { files, refused, place })
+}
+
+/// Whether a file that was just fetched looks like weather of a format, whatever its name, to its end.
+///
+/// # Errors
+/// What is wrong with it.
+pub fn looks_like(path: &Path, format: &WeatherFormat) -> Result<(), String> {
+    let place = Place::File(path.to_owned());
+    let head = place.head(HEAD_BYTES).map_err(|finding| finding.to_string())?;
+    if head.starts_with(b"PK") {
+        return check_archive(path);
+    }
+    if !format.reader().fits(&encoding_rs::UTF_8.decode(&head).0) {
+        return Err(format!("it is not of the format {}, known by {}", format.name(), format.reader().known_by()));
+    }
+    match std::fs::read(path).map(|bytes| bytes.ends_with(b"\n")) {
+        Ok(true) => Ok(()),
+        Ok(false) => Err("its last line is not whole".to_owned()),
+        Err(error) => Err(error.to_string()),
+    }
 }
 
 /// Whether a file is one of the study's. What is not of its format, and nothing else that is known either, is taken too: that

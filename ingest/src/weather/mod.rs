@@ -37,7 +37,7 @@ use join::join;
 use table::{Table, read_file};
 
 pub use columns::ColumnMap;
-pub use discover::{WeatherFile, WeatherFiles, discover};
+pub use discover::{WeatherFile, WeatherFiles, discover, looks_like};
 pub use format::TimeLabel;
 pub use join::IrradianceSplit;
 pub use series::{Weather, WeatherMean};
