@@ -48,8 +48,9 @@ pub(crate) fn walk(base: &Path, pattern: &str, extensions: &[&str]) -> Result<Wa
     let mut walk = Walk::default();
     let in_folder = base.join(pattern).is_dir();
     let search = Search { base, extensions };
+    let mut above: Vec<PathBuf> = base.join(pattern).canonicalize().into_iter().filter(|_| in_folder).collect();
     for path in list(base, pattern)? {
-        search.take(&path, 0, !in_folder, &mut walk);
+        search.take(&path, &mut above, !in_folder, &mut walk);
     }
     Ok(walk)
 }
@@ -70,13 +71,14 @@ struct Search<'a> {
 
 impl Search<'_> {
     /// A file, or a folder with all in it. A file that is `named` counts whatever its extension.
-    fn take(&self, path: &Path, depth: usize, named: bool, walk: &mut Walk) {
+    /// `above` are the folders that it lies in.
+    fn take(&self, path: &Path, above: &mut Vec<PathBuf>, named: bool, walk: &mut Walk) {
         let label = label(self.base, path);
         if is_left_over(Path::new(&label)) {
             return;
         }
         if path.is_dir() {
-            return self.take_folder(path, depth, walk);
+            return self.take_folder(path, above, walk);
         }
         if path.is_symlink() && !path.exists() {
             let message = "the link leads nowhere; its target is gone: bring it back, or remove the link";
@@ -98,16 +100,24 @@ impl Search<'_> {
         self.extensions.contains(&extension(path).as_str())
     }
 
-    fn take_folder(&self, path: &Path, depth: usize, walk: &mut Walk) {
-        if depth == DEEPEST {
-            let message =
-                format!("more than {DEEPEST} folders in each other, or a link to one above; nothing in it is read");
+    fn take_folder(&self, path: &Path, above: &mut Vec<PathBuf>, walk: &mut Walk) {
+        let real = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+        if above.contains(&real) {
+            let message = "a link to a folder above it; nothing in it is read: remove it";
+            return walk.refuse(label(self.base, path), FindingKind::Unreadable, message);
+        }
+        if above.len() > DEEPEST {
+            let message = format!("more than {DEEPEST} folders in each other; nothing in it is read");
             return walk.refuse(label(self.base, path), FindingKind::Unreadable, &message);
         }
         let listed = std::fs::read_dir(path)
             .and_then(|entries| entries.map(|entry| Ok(entry?.path())).collect::<std::io::Result<BTreeSet<PathBuf>>>());
         match listed {
-            Ok(inside) => inside.iter().for_each(|path| self.take(path, depth + 1, false, walk)),
+            Ok(inside) => {
+                above.push(real);
+                inside.iter().for_each(|path| self.take(path, above, false, walk));
+                above.pop();
+            }
             Err(error) => {
                 let message = format!("the folder cannot be read: {error}; check its permissions");
                 walk.refuse(label(self.base, path), FindingKind::Unreadable, &message);

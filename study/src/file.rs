@@ -375,7 +375,7 @@ impl StudyFile {
         Self::parse(&text, &shown)
     }
 
-    fn parse(text: &str, path: &str) -> Result<Self, StudyFileError> {
+    pub fn parse(text: &str, path: &str) -> Result<Self, StudyFileError> {
         let file: Self = toml::from_str(text).map_err(|error| {
             let at = error.span().map_or(0, |s| s.start).min(text.len());
             let before = &text[..at];

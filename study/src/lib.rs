@@ -92,6 +92,17 @@ impl Study {
             .map_err(|message| StudyFileError::Content { path: path.display().to_string(), message })
     }
 
+    /// The study of a text, as if it stood in a file of that path.
+    ///
+    /// # Errors
+    /// As [`Study::open`].
+    pub fn parse(text: &str, path: &Path) -> Result<Self, StudyFileError> {
+        let file = StudyFile::parse(text, &path.display().to_string())?;
+        let base = path.parent().map(Path::to_owned).unwrap_or_default();
+        Self::new(&file, base, None)
+            .map_err(|message| StudyFileError::Content { path: path.display().to_string(), message })
+    }
+
     fn new(file: &StudyFile, base: PathBuf, database: Option<&Path>) -> Result<Self, String> {
         let site = Site::new(file.location.latitude_deg, file.location.longitude_deg)
             .map_err(|e| format!("[location] {e}"))?;

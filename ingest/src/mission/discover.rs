@@ -133,6 +133,15 @@ fn parse_name(stem: &str) -> Result<(u32, DateTime<Utc>, DateTime<Utc>), String>
 }
 
 impl MissionSource {
+    /// The mission that a file's name says, whether or not the file is there; `None` for other names.
+    #[must_use]
+    pub fn at(path: &Path) -> Option<Self> {
+        let name = path.file_stem()?.to_string_lossy().into_owned();
+        let (bus, start, end) = parse_name(&name).ok()?;
+        let place = Place::File(path.to_owned());
+        Some(Self { name, path: path.to_string_lossy().into_owned(), bus, start, end, place })
+    }
+
     /// Reads the bytes.
     ///
     /// # Errors

@@ -30,11 +30,12 @@ mod values;
 
 use chrono_tz::Tz;
 use shading::Site;
+use std::path::Path;
 
-use crate::{FileReader, FileRecord, IngestError};
+use crate::{Content, FileReader, FileRecord, IngestError};
 use format::Format;
 use join::join;
-use table::{Table, read_file};
+use table::{Table, read_content, read_file};
 
 pub use columns::ColumnMap;
 pub use discover::{WeatherFile, WeatherFiles, discover, looks_like};
@@ -143,14 +144,34 @@ pub struct WeatherOptions {
 /// beside usable ones are in the records.
 pub fn read(files: &WeatherFiles, options: &WeatherOptions) -> Result<(Weather, Vec<FileRecord>), IngestError> {
     let mut reader = FileReader::default();
-    let mut records = files.refused.clone();
+    let read = files.files.iter().map(|file| read_file(file, options, &mut reader));
+    series(&files.place, files.refused.clone(), read, options)
+}
+
+/// The same of one file whose content is in memory.
+///
+/// # Errors
+/// [`IngestError`] where it cannot be used.
+pub fn read_one(
+    label: &str,
+    content: &Content,
+    options: &WeatherOptions,
+) -> Result<(Weather, Vec<FileRecord>), IngestError> {
+    series(Path::new(label), Vec::new(), std::iter::once(read_content(label, content, options)), options)
+}
+
+fn series(
+    place: &Path,
+    mut records: Vec<FileRecord>,
+    files: impl Iterator<Item = (Vec<Table>, FileRecord)>,
+    options: &WeatherOptions,
+) -> Result<(Weather, Vec<FileRecord>), IngestError> {
     let mut parts: Vec<(Table, usize)> = Vec::new();
-    for file in &files.files {
-        let (tables, record) = read_file(file, options, &mut reader);
+    for (tables, record) in files {
         parts.extend(tables.into_iter().map(|table| (table, records.len())));
         records.push(record);
     }
-    let error = |reason: String| IngestError::Weather { path: files.place.clone(), reason };
+    let error = |reason: String| IngestError::Weather { path: place.to_owned(), reason };
     stations::choose(&mut parts, &mut records, options.station.as_deref()).map_err(error)?;
     let rank = |record: usize| options.format.reader().rank(&records[record].path);
     parts.sort_by_cached_key(|(_, record)| (rank(*record), records[*record].path.clone()));

@@ -54,18 +54,25 @@ pub(crate) fn read_file(
     options: &WeatherOptions,
     reader: &mut FileReader,
 ) -> (Vec<Table>, FileRecord) {
-    let label = file.path();
-    let content = match file.0.place.read(reader) {
-        Ok(content) => content,
-        Err(finding) => return (Vec::new(), FileRecord::refused(label, FileKind::Weather, "", 0, finding)),
-    };
+    match file.0.place.read(reader) {
+        Ok(content) => {
+            let read = read_content(file.path(), &content, options);
+            reader.recycle(content);
+            read
+        }
+        Err(finding) => (Vec::new(), FileRecord::refused(file.path(), FileKind::Weather, "", 0, finding)),
+    }
+}
+
+/// The same of a content that is in memory.
+pub(crate) fn read_content(label: &str, content: &Content, options: &WeatherOptions) -> (Vec<Table>, FileRecord) {
     let format = options.format.reader();
     let parsed = decode(&content.bytes, format).and_then(|text| {
         let layout = format.layout(&text)?.ok_or_else(|| other_format(&text, format))?;
         parse(&text, &layout, options)
     });
-    let read = match parsed {
-        Ok((tables, said)) => (tables, said.of(label, &content)),
+    match parsed {
+        Ok((tables, said)) => (tables, said.of(label, content)),
         Err(mut finding) => {
             if finding.kind == FindingKind::MissingColumn
                 && let Some(other) = of_other_format(&content.bytes, format)
@@ -76,9 +83,7 @@ pub(crate) fn read_file(
             let record = FileRecord::refused(label, FileKind::Weather, &content.blake3, bytes, finding);
             (Vec::new(), record.stamped(content.stamp))
         }
-    };
-    reader.recycle(content);
-    read
+    }
 }
 
 fn decode(bytes: &[u8], format: &dyn Format) -> Result<String, Finding> {
