@@ -112,7 +112,7 @@ fn cli_unusable_inputs_end_with_3_and_say_what_to_do() {
         scratch.edit("study.toml", to, from);
     };
     fails("path = \"ztbus\"", "path = \"nowhere\"", "there is no such file or folder");
-    fails("path = \"ztbus\"", "path = \"./weather\"", "no ZTBus missions that can be used");
+    fails("path = \"ztbus\"", "path = \"./weather\"", "no missions that can be used");
     fails("buses = [183]", "buses = [7]", "of the buses [7], but of [183]");
     fails("path = \"weather\"", "path = \"./ztbus\"", "csv: line 1: not a file of the format meteoswiss-ogd");
     fails("# station = \"sma\"", "station = \"ber\"", "no files of the station \"ber\"; there are [\"sma\"]");

@@ -2,7 +2,7 @@
 #![no_main]
 
 use ingest::FileReader;
-use ingest::mission::{MissionOptions, discover, read};
+use ingest::mission::{MissionFormat, MissionOptions, discover, read};
 use libfuzzer_sys::fuzz_target;
 use std::path::PathBuf;
 use std::sync::LazyLock;
@@ -15,7 +15,7 @@ static FOLDER: LazyLock<PathBuf> = LazyLock::new(|| {
 
 fuzz_target!(|bytes: &[u8]| {
     std::fs::write(FOLDER.join("a.zip"), bytes).expect("room for one archive");
-    let Ok(found) = discover(&FOLDER, "a.zip", &[]) else { return };
+    let Ok(found) = discover(&FOLDER, "a.zip", &MissionFormat::ZtBus, &[]) else { return };
     let (mut reader, options) =
         (FileReader::default(), MissionOptions { segment_s: 3600, door_open_share: 0.6, keep_partial: false });
     for mission in &found.missions {

@@ -9,7 +9,8 @@ use shading::Site;
 fuzz_target!(|bytes: &[u8]| {
     let [choice, bytes @ ..] = bytes else { return };
     let choice = usize::from(*choice);
-    let fixed = WeatherFormat::NAMES.get(choice % WeatherFormat::NAMES.len()).and_then(|name| WeatherFormat::fixed(name));
+    let fixed =
+        WeatherFormat::NAMES.get(choice % WeatherFormat::NAMES.len()).and_then(|name| WeatherFormat::fixed(name));
     let zurich = chrono_tz::Europe::Zurich;
     let map = ColumnMap {
         clock: if choice % 2 == 0 { Clock::Zone(zurich) } else { Clock::Utc },

@@ -2,7 +2,8 @@
 
 use flate2::read::MultiGzDecoder;
 use std::fs::{File, Metadata};
-use std::io::{BufReader, Read};
+use std::io::{BufReader, Read, Seek, SeekFrom};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 use zip::ZipArchive;
@@ -109,6 +110,21 @@ impl FileReader {
         Ok(Content { stamp: FileStamp::settled(&metadata), ..content })
     }
 
+    /// Reads pieces of a file, one after the other.
+    ///
+    /// # Errors
+    /// A finding that says why they cannot be read.
+    pub(crate) fn read_pieces(&mut self, path: &Path, pieces: &[Range<usize>]) -> Result<Content, Finding> {
+        let (mut file, metadata) = open_regular(path)?;
+        let mut bytes = std::mem::take(&mut self.buffer);
+        bytes.clear();
+        for piece in pieces {
+            let read = file.seek(SeekFrom::Start(piece.start as u64));
+            read.and_then(|_| (&file).take(piece.len() as u64).read_to_end(&mut bytes)).map_err(|e| unreadable(&e))?;
+        }
+        Ok(Content { stamp: FileStamp::settled(&metadata), ..Content::new(bytes) })
+    }
+
     /// Reads a file that is compressed by gzip.
     ///
     /// # Errors
@@ -168,7 +184,10 @@ pub(crate) fn head_of(source: impl Read, most: usize) -> Result<Vec<u8>, Finding
 
 fn limited(source: impl Read, size: u64, mut bytes: Vec<u8>) -> Result<Content, Finding> {
     let too_large = || {
-        let message = format!("it holds more than {} MiB; no mission or weather file is that large", MAX_BYTES >> 20);
+        let message = format!(
+            "it holds more than {} MiB, as no mission and no weather file does; split a table of many by vehicle or month",
+            MAX_BYTES >> 20
+        );
         Finding::whole(FindingKind::Unreadable, message)
     };
     if size > MAX_BYTES {

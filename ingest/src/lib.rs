@@ -17,12 +17,14 @@ mod quality;
 pub mod sample;
 mod scan;
 mod segments;
+mod stamp;
 mod telemetry;
 mod walk;
 pub mod weather;
 
 pub use files::{Content, FileReader, FileStamp, check_archive, check_lines, write_whole};
 pub use quality::{ExcludedSegment, ExclusionReason, FileKind, FileRecord, Finding, FindingKind};
+pub use stamp::Clock;
 
 use std::path::PathBuf;
 
@@ -38,7 +40,7 @@ pub enum IngestError {
         reason: String,
     },
     /// No mission was found.
-    #[error("{path}: no ZTBus missions {detail}")]
+    #[error("{path}: no missions {detail}")]
     NoMissions {
         /// Where they were looked for.
         path: PathBuf,

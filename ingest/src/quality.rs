@@ -4,7 +4,6 @@ use chrono::{DateTime, Utc};
 use std::fmt;
 
 use crate::FileStamp;
-use crate::telemetry::{AMBIENT, POWER, SPEED};
 
 /// What a file holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -72,6 +71,8 @@ pub enum FindingKind {
     RefusedRow,
     /// Values that cannot be read.
     RefusedValue,
+    /// Values that cannot be, in a column that no result is computed from.
+    UnusedValue,
     /// Values outside the physical range, taken as missing.
     OutOfRange,
     /// Values in another unit than the column's.
@@ -92,7 +93,7 @@ pub enum FindingKind {
 
 impl FindingKind {
     /// All of them.
-    pub const ALL: [Self; 25] = [
+    pub const ALL: [Self; 26] = [
         Self::Unreadable,
         Self::Empty,
         Self::WrongEncoding,
@@ -110,6 +111,7 @@ impl FindingKind {
         Self::Overlap,
         Self::RefusedRow,
         Self::RefusedValue,
+        Self::UnusedValue,
         Self::OutOfRange,
         Self::WrongUnit,
         Self::MissingValue,
@@ -147,6 +149,7 @@ impl FindingKind {
             Self::Overlap => "overlap",
             Self::RefusedRow => "refused_row",
             Self::RefusedValue => "refused_value",
+            Self::UnusedValue => "unused_value",
             Self::OutOfRange => "out_of_range",
             Self::WrongUnit => "wrong_unit",
             Self::MissingValue => "missing_value",
@@ -246,11 +249,7 @@ impl FileRecord {
     /// the weather that cannot be used is missing, and its interval interpolated or left out.
     #[must_use]
     pub fn replaced(&self) -> Option<&Finding> {
-        let replaced = |f: &&Finding| {
-            // What no sample is computed from is missing then.
-            matches!(f.kind, FindingKind::RefusedValue | FindingKind::OutOfRange)
-                && !f.column.as_deref().is_some_and(|column| [AMBIENT, SPEED, POWER].contains(&column))
-        };
+        let replaced = |f: &&Finding| matches!(f.kind, FindingKind::RefusedValue | FindingKind::OutOfRange);
         let is_used_mission = self.accepted && self.kind == FileKind::Mission;
         self.findings.iter().filter(|_| is_used_mission).find(replaced)
     }

@@ -13,6 +13,8 @@ const BATCH: usize = 4096;
 /// Records below a header.
 pub(crate) struct Scanner<'b, const N: usize> {
     bytes: &'b [u8],
+    /// What stands between two fields.
+    separator: u8,
     /// The wanted column of each wanted field.
     places: [Option<usize>; N],
     /// Where the next block begins.
@@ -50,14 +52,18 @@ enum Quotes {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Record<'b, const N: usize> {
     pub line: u64,
+    /// Where it stands in the bytes, its line break included.
+    pub start: usize,
+    pub end: usize,
     pub fields: [&'b [u8]; N],
 }
 
 impl<'b, const N: usize> Scanner<'b, N> {
     /// `places` are the positions of the wanted columns; the first record of `bytes` is the header.
-    pub fn new(bytes: &'b [u8], places: &[Option<usize>; N]) -> Self {
+    pub fn new(bytes: &'b [u8], separator: u8, places: &[Option<usize>; N]) -> Self {
         let mut scanner = Self {
             bytes,
+            separator,
             places: *places,
             at: 0,
             inside: 0,
@@ -109,7 +115,7 @@ impl<'b, const N: usize> Scanner<'b, N> {
                 &padded
             }
         };
-        let [commas, newlines, quotes] = [b',', b'\n', b'"'].map(|byte| equal(block, byte));
+        let [commas, newlines, quotes] = [self.separator, b'\n', b'"'].map(|byte| equal(block, byte));
         let before = self.inside;
         let inside = prefix_xor(quotes) ^ before;
         let separators = (commas | newlines) & !inside;
@@ -153,7 +159,8 @@ impl<'b, const N: usize> Iterator for Scanner<'b, N> {
         }
         let (first, last) = (self.done[0], self.ends[self.done[1]]);
         let end = self.separators[last];
-        let mut record = Record { line: self.line, fields: [b"".as_slice(); N] };
+        let next = (end + 1).min(self.bytes.len());
+        let mut record = Record { line: self.line, start: self.start, end: next, fields: [b"".as_slice(); N] };
         for (field, place) in record.fields.iter_mut().zip(self.places) {
             let Some(separator) = place.map(|place| first + place).filter(|separator| *separator <= last) else {
                 continue;
@@ -230,7 +237,7 @@ mod tests {
 
     fn scanned<const N: usize>(bytes: &[u8], places: [Option<usize>; N]) -> Vec<(u64, Vec<String>)> {
         let text = |field: &&[u8]| String::from_utf8_lossy(field).replace("\"\"", "\"");
-        Scanner::new(bytes, &places).map(|r| (r.line, r.fields.iter().map(text).collect())).collect()
+        Scanner::new(bytes, b',', &places).map(|r| (r.line, r.fields.iter().map(text).collect())).collect()
     }
 
     #[test]
@@ -258,7 +265,7 @@ mod tests {
             .map(|(line, fields)| (line, fields.map(str::to_owned).to_vec()))
             .to_vec();
         assert_eq!(scanned(text, places), expected);
-        let mut scanner = Scanner::new(text, &places);
+        let mut scanner = Scanner::new(text, b',', &places);
         assert_eq!((scanner.by_ref().count(), scanner.bad_quote()), (4, Some(6)));
     }
 
@@ -287,7 +294,7 @@ mod tests {
         #[test]
         fn prop_any_bytes_end(bytes in prop::collection::vec(prop_oneof![Just(b'"'), Just(b','), Just(b'\n'), any::<u8>()], 0..300)) {
             let newlines = bytes.iter().filter(|b| **b == b'\n').count() as u64;
-            for record in Scanner::new(&bytes, &[Some(0), Some(3)]) {
+            for record in Scanner::new(&bytes, b',', &[Some(0), Some(3)]) {
                 prop_assert!(record.line <= newlines + 1);
             }
         }

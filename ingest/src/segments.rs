@@ -16,8 +16,8 @@ pub(crate) struct Clock {
 pub(crate) struct Sums {
     /// Passengers × s.
     pub passenger_seconds: f64,
-    /// Seconds with an open door.
-    pub door_seconds: i64,
+    /// Seconds with an open door, or shares of the doors × s.
+    pub door_seconds: f64,
     /// Seconds that a row stands for.
     pub observed_s: i64,
     /// Lines of the first and last row that lie in the segment.
@@ -33,8 +33,8 @@ pub(crate) struct Sums {
 pub(crate) struct State {
     /// Passengers on board: 0 before the first count.
     pub passengers: f64,
-    /// Whether a door is open.
-    pub door_open: bool,
+    /// How far doors are open, as [`cabin::LoadChange`] says it.
+    pub door_open: f64,
 }
 
 /// What a row says of how the bus drives; NaN where it does not.
@@ -116,7 +116,7 @@ impl Adder {
             let seconds = until - self.at_s;
             let sums = &mut self.segments[self.segment];
             sums.passenger_seconds += self.state.passengers * seconds as f64;
-            sums.door_seconds += if self.state.door_open { seconds } else { 0 };
+            sums.door_seconds += self.state.door_open * seconds as f64;
             sums.observed_s += if observed { seconds } else { 0 };
             self.at_s = until;
         }

@@ -40,6 +40,52 @@ pub(crate) struct Row<'b> {
     pub route: &'b [u8],
 }
 
+/// A table of telemetry, for what is said of it: the names of its columns, and where its lines stand in the file.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Table<'b> {
+    pub bytes: &'b [u8],
+    pub separator: u8,
+    /// Lines of the file that stand before the second line of the bytes, the first being the header.
+    pub lines_before: u64,
+    pub time: &'b str,
+    pub passengers: &'b str,
+    pub door: &'b str,
+    pub ambient: &'b str,
+    pub speed: &'b str,
+    pub power: &'b str,
+}
+
+impl<'b> Table<'b> {
+    /// The table of a ZTBus file.
+    pub fn ztbus(bytes: &'b [u8]) -> Self {
+        Self {
+            bytes,
+            separator: b',',
+            lines_before: 1,
+            time: TIME,
+            passengers: PASSENGERS,
+            door: DOOR,
+            ambient: AMBIENT,
+            speed: SPEED,
+            power: POWER,
+        }
+    }
+
+    /// The text of a field on a line of the file, cut to a length that fits a message.
+    pub fn text_at(&self, line: u64, column: &str) -> Option<String> {
+        let bytes = self.bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(self.bytes);
+        let mut builder = csv::ReaderBuilder::new();
+        builder.delimiter(self.separator).flexible(true);
+        let position = builder.from_reader(bytes).headers().ok()?.iter().position(|h| h.trim() == column)?;
+        let before = usize::try_from(line.checked_sub(self.lines_before + 1)?).ok()?;
+        let start = memchr::memchr_iter(b'\n', bytes).nth(before)? + 1;
+        let end = memchr::memchr(b'\n', &bytes[start..]).map_or(bytes.len(), |n| start + n);
+        let mut reader = builder.has_headers(false).from_reader(&bytes[start..end]);
+        let record = reader.byte_records().next()?.ok()?;
+        Some(String::from_utf8_lossy(record.get(position)?).chars().take(40).collect())
+    }
+}
+
 /// The telemetry of one mission.
 pub(crate) struct Telemetry<'b> {
     bytes: &'b [u8],
@@ -64,7 +110,7 @@ impl<'b> Telemetry<'b> {
     /// # Errors
     /// A file without rows, or with a quote that never closes.
     pub fn for_each(&self, mut row: impl FnMut(Row<'b>)) -> Result<u64, Finding> {
-        let mut scanner = Scanner::new(self.bytes, &self.places);
+        let mut scanner = Scanner::new(self.bytes, b',', &self.places);
         let mut count = 0;
         let [mut ambient, mut speed, mut power] = [const { Last::NONE }; 3];
         for record in &mut scanner {
@@ -102,15 +148,15 @@ impl<'b> Telemetry<'b> {
 }
 
 /// The last number of a column: many stay for seconds.
-struct Last<'b> {
+pub(crate) struct Last<'b> {
     text: &'b [u8],
     number: Option<f64>,
 }
 
 impl<'b> Last<'b> {
-    const NONE: Self = Self { text: b"", number: Some(f64::NAN) };
+    pub const NONE: Self = Self { text: b"", number: Some(f64::NAN) };
 
-    fn number(&mut self, text: &'b [u8]) -> Option<f64> {
+    pub fn number(&mut self, text: &'b [u8]) -> Option<f64> {
         if self.text != text {
             *self = Self { text, number: self::text(text).and_then(parse::number) };
         }
@@ -128,7 +174,7 @@ fn second(field: &[u8]) -> Option<i64> {
     plain.or_else(|| parse::second(text(field)?))
 }
 
-fn text(field: &[u8]) -> Option<&str> {
+pub(crate) fn text(field: &[u8]) -> Option<&str> {
     std::str::from_utf8(field).ok().map(str::trim)
 }
 

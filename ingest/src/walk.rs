@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 use std::ffi::OsStr;
+use std::ops::Range;
 use std::path::{Component, Path, PathBuf};
 
 use crate::files::{extension, head_of, label, list, open_archive, open_regular, unpacked, unreadable};
@@ -192,6 +193,22 @@ impl Place {
             Self::Gzip(path) => reader.read_gzip(path),
             Self::Entry { archive, index, .. } => reader.read_entry(archive, *index),
         }
+    }
+
+    /// Reads pieces, one after the other.
+    ///
+    /// # Errors
+    /// A finding that says why they cannot be read.
+    pub fn read_pieces(&self, pieces: &[Range<usize>], reader: &mut FileReader) -> Result<Content, Finding> {
+        if let Self::File(path) = self {
+            return reader.read_pieces(path, pieces);
+        }
+        let whole = self.read(reader)?;
+        let piece = |piece: &Range<usize>| whole.bytes.get(piece.clone()).unwrap_or_default();
+        let pieces = Content::new(pieces.iter().map(piece).collect::<Vec<_>>().concat());
+        let stamp = whole.stamp;
+        reader.recycle(whole);
+        Ok(Content { stamp, ..pieces })
     }
 
     /// The first bytes.

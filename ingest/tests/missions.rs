@@ -3,7 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "a test ends where something is not as expected")]
 
 use chrono::{DateTime, Utc};
-use ingest::mission::{MissionOptions, MissionReading, discover, overlaps, read};
+use ingest::mission::{MissionFormat, MissionOptions, MissionReading, discover, overlaps, read};
 use ingest::{ExclusionReason, FileReader, FindingKind, IngestError};
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -47,7 +47,7 @@ fn read_bytes(bytes: &[u8], options: &MissionOptions) -> MissionReading {
 }
 
 fn read_folder(dir: &Path, options: &MissionOptions) -> Vec<MissionReading> {
-    let found = discover(dir, "", &[]).unwrap();
+    let found = discover(dir, "", &MissionFormat::ZtBus, &[]).unwrap();
     found.missions.iter().map(|m| read(m, &m.load(&mut FileReader::default()).unwrap(), options)).collect()
 }
 
@@ -127,7 +127,7 @@ fn prop_an_archive_entry_that_climbs_out_is_refused() {
     zip.start_file(NAME, options).unwrap();
     zip.write_all(&file(&rows(), "\n")).unwrap();
     zip.finish().unwrap();
-    let found = discover(dir.path(), "ZTBus.zip", &[]).unwrap();
+    let found = discover(dir.path(), "ZTBus.zip", &MissionFormat::ZtBus, &[]).unwrap();
     assert_eq!(found.missions.len(), 1);
     assert_eq!(found.refused.len(), 1);
     assert_eq!(found.refused[0].path, format!("ZTBus.zip!../../{NAME}"));
@@ -267,7 +267,7 @@ fn prop_overlapping_missions_of_a_bus_lose_the_later_one() {
     ] {
         std::fs::write(dir.path().join(name), "").unwrap();
     }
-    let found = discover(dir.path(), "", &[]).unwrap();
+    let found = discover(dir.path(), "", &MissionFormat::ZtBus, &[]).unwrap();
     let refused = overlaps(&found.missions);
     assert_eq!(refused.len(), 1);
     assert_eq!(refused[0].1.path, "B183_2022-01-10_08-00-00_2022-01-10_10-00-00.csv");
@@ -277,24 +277,24 @@ fn prop_overlapping_missions_of_a_bus_lose_the_later_one() {
 #[test]
 fn prop_what_is_no_mission_is_said() {
     let dir = tempfile::tempdir().unwrap();
-    let empty = discover(dir.path(), "", &[]).unwrap_err();
+    let empty = discover(dir.path(), "", &MissionFormat::ZtBus, &[]).unwrap_err();
     assert!(matches!(empty, IngestError::NoMissions { .. }));
-    assert!(matches!(discover(dir.path(), "nowhere", &[]), Err(IngestError::Path { .. })));
+    assert!(matches!(discover(dir.path(), "nowhere", &MissionFormat::ZtBus, &[]), Err(IngestError::Path { .. })));
     std::fs::write(dir.path().join(NAME), "").unwrap();
     std::fs::write(dir.path().join("metaData.csv"), "").unwrap();
     std::fs::write(dir.path().join("notes.csv"), "").unwrap();
     std::fs::write(dir.path().join("B183_2022-01-10_06-00-00_2012-01-10_08-29-59.csv"), "").unwrap();
-    let found = discover(dir.path(), "", &[183]).unwrap();
+    let found = discover(dir.path(), "", &MissionFormat::ZtBus, &[183]).unwrap();
     assert_eq!(found.missions.len(), 1);
     assert_eq!(found.refused.len(), 2);
     assert!(found.refused.iter().all(|f| f.findings[0].kind == FindingKind::NotAMission));
-    let other = discover(dir.path(), "*.csv", &[208]).unwrap_err().to_string();
+    let other = discover(dir.path(), "*.csv", &MissionFormat::ZtBus, &[208]).unwrap_err().to_string();
     assert!(other.contains("[183]"), "{other}");
 }
 
 #[test]
 fn xval_python_the_real_mission_has_the_rows_and_door_seconds_that_python_counts() {
-    let Ok(found) = discover(&data(), "ztbus", &[183]) else {
+    let Ok(found) = discover(&data(), "ztbus", &MissionFormat::ZtBus, &[183]) else {
         eprintln!("skipped: no real data under {}; set BUSCLIMATE_DATA", data().display());
         return;
     };

@@ -53,7 +53,7 @@ pub struct Check {
 pub fn check(study: &Study, progress: &dyn Progress) -> Result<Check, PipelineError> {
     let inputs = Inputs::new(study, true);
     let mut check = Check { replays: Replay::ALL.len(), ..Check::default() };
-    let readings = match mission::discover(&study.base, &study.missions_path, &study.buses) {
+    let readings = match mission::discover(&study.base, &study.missions_path, &study.mission_format, &study.buses) {
         Ok(found) => {
             let overlapping: BTreeMap<usize, FileRecord> = mission::overlaps(&found.missions).into_iter().collect();
             let wanted: Vec<&MissionSource> = found

@@ -42,7 +42,7 @@ pub(crate) fn ingest(
     store: &mut Store,
     progress: &dyn Progress,
 ) -> Result<Work, PipelineError> {
-    let found = mission::discover(&study.base, &study.missions_path, &study.buses)?;
+    let found = mission::discover(&study.base, &study.missions_path, &study.mission_format, &study.buses)?;
     let overlapping: BTreeMap<usize, FileRecord> = mission::overlaps(&found.missions).into_iter().collect();
     let known = store.known_files(FileKind::Mission)?;
     let wanted: Vec<&MissionSource> =

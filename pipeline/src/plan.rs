@@ -83,7 +83,7 @@ impl Planning<'_> {
 
     fn ingest(&mut self) -> Result<StagePlan, PipelineError> {
         let study = self.study;
-        let found = mission::discover(&study.base, &study.missions_path, &study.buses)?;
+        let found = mission::discover(&study.base, &study.missions_path, &study.mission_format, &study.buses)?;
         let overlapping: BTreeSet<usize> = mission::overlaps(&found.missions).into_iter().map(|(i, _)| i).collect();
         let known = self.store.known_files(FileKind::Mission)?;
         let before = Before::of(study, &self.inputs, &known);

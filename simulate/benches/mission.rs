@@ -33,7 +33,7 @@ fn winter_day(bencher: Bencher) {
     let stop = |i: u32| LoadChange {
         second: 80 * (i / 2) + 20 * (i % 2),
         passengers: f64::from(i % 41),
-        door_open: i.is_multiple_of(2),
+        door_open: f64::from(i.is_multiple_of(2)),
     };
     let loads: Vec<LoadChange> = (0..3600 * HOURS as u32 / 40).map(stop).collect();
     let mission =

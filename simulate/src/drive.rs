@@ -31,7 +31,7 @@ pub fn simulate(
         for second in from_s..from_s + mission.segment_s {
             while let Some(load) = loads.next_if(|l| l.second <= second) {
                 passengers = load.passengers;
-                door_open_fraction = if load.door_open { mission.door_open_share } else { 0.0 };
+                door_open_fraction = load.door_open * mission.door_open_share;
             }
             let cabin = mission.minutes[second as usize / 60].with_load(passengers, door_open_fraction);
             let t = &state.temperatures;

@@ -25,7 +25,7 @@ fn constant(
     let o = optimum(&vehicle, &views, design, d, limit);
     let segments = vec![segment(&vehicle, &views, o, d, limit); hours];
     let minutes = vec![Cabin::new(&vehicle, &views, d); 60 * segments.len()];
-    let loads = [LoadChange { second: 0, passengers: d.passengers, door_open: true }];
+    let loads = [LoadChange { second: 0, passengers: d.passengers, door_open: 1.0 }];
     let mission = Mission {
         loads: &loads,
         minutes: &minutes,
@@ -80,7 +80,7 @@ fn stops(seconds: u32) -> Vec<LoadChange> {
         .map(|i| LoadChange {
             second: 80 * (i / 2) + 20 * (i % 2),
             passengers: f64::from((i / 2 * 7) % 41),
-            door_open: i % 2 == 0,
+            door_open: f64::from(i % 2 == 0),
         })
         .collect()
 }
@@ -116,7 +116,7 @@ fn prop_energy_is_conserved_over_a_mission() {
     let (mut passengers, mut doors) = (0.0, 0.0);
     for second in 0..3600 * 3 {
         while let Some(change) = next.next_if(|c| c.second <= second) {
-            (passengers, doors) = (change.passengers, if change.door_open { 0.6 } else { 0.0 });
+            (passengers, doors) = (change.passengers, 0.6 * change.door_open);
         }
         let cabin = weather.with_load(passengers, doors);
         // Simpson's rule over halves of each second integrates what the step has taken in.

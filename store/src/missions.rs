@@ -136,6 +136,8 @@ pub(crate) fn segment(r: &SqliteRow) -> Result<Segment, sqlx::Error> {
     })
 }
 
+/// Steps of a door between shut and open.
+const DOOR_STEPS: f64 = 200.0;
 /// Bytes of a load change.
 const LOAD_BYTES: usize = 13;
 
@@ -144,7 +146,12 @@ fn encode_loads(loads: &[LoadChange]) -> Vec<u8> {
     for load in loads {
         bytes.extend(load.second.to_le_bytes());
         bytes.extend(load.passengers.to_le_bytes());
-        bytes.push(u8::from(load.door_open));
+        // Shut, open, or between by half a percent.
+        bytes.push(match load.door_open {
+            0.0 => 0,
+            1.0 => 1,
+            between => 2 + (between * DOOR_STEPS).round() as u8,
+        });
     }
     bytes
 }
@@ -155,6 +162,9 @@ fn decode_load(bytes: &[u8]) -> LoadChange {
     LoadChange {
         second: u32::from_le_bytes(second),
         passengers: f64::from_le_bytes(passengers),
-        door_open: bytes[12] != 0,
+        door_open: match bytes[12] {
+            byte @ (0 | 1) => f64::from(byte),
+            byte => f64::from(byte - 2) / DOOR_STEPS,
+        },
     }
 }

@@ -58,7 +58,39 @@ pub struct Location {
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Missions {
+    #[serde(default, skip_serializing_if = "Telemetry::is_ztbus")]
+    pub format: Telemetry,
     pub path: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub time_column: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub time_zone: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub utc_offset: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub vehicle_column: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub vehicle: Option<u32>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub passengers_column: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub door_column: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub door_share_column: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub speed_column: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub speed_unit: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub power_column: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub power_unit: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub route_column: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub hold_s: Option<u32>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cut_gap_s: Option<u32>,
     #[serde(default)]
     pub buses: Vec<u32>,
     #[serde(default = "default_segment_s")]
@@ -73,6 +105,23 @@ pub struct Missions {
     // What is expected of the data concerns whoever watches over a job, not the results.
     #[serde(default, skip_serializing)]
     pub expect_newest_within_hours: Option<f64>,
+}
+
+/// How mission files look.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Telemetry {
+    #[default]
+    ZtBus,
+    Csv,
+}
+
+impl Telemetry {
+    // serde asks by reference.
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "the signature is serde's")]
+    fn is_ztbus(&self) -> bool {
+        *self == Self::ZtBus
+    }
 }
 
 #[derive(Debug, Clone, Serialize, Deserialize)]

@@ -62,9 +62,10 @@ pub fn surroundings_key(study: &Study, blake3: &str) -> String {
 /// A part of a key: its name as in the study file, and its value.
 type Setting = (&'static str, String);
 
-fn mission_settings(study: &Study) -> [Setting; 3] {
+fn mission_settings(study: &Study) -> [Setting; 4] {
     let options = &study.missions;
     [
+        ("missions.format", format!("{:?}", study.mission_format)),
         ("missions.segment_s", options.segment_s.to_string()),
         ("missions.door_open_share", options.door_open_share.to_string()),
         ("missions.keep_partial", options.keep_partial.to_string()),

@@ -12,7 +12,7 @@ pub mod template;
 
 use cabin::{ComfortWindow, Vehicle};
 use chrono_tz::Tz;
-use ingest::mission::MissionOptions;
+use ingest::mission::{MissionFormat, MissionOptions};
 use ingest::weather::{IrradianceSplit, WeatherOptions};
 use shading::Site;
 use simulate::Dynamics;
@@ -44,6 +44,8 @@ pub struct Study {
     pub zone: Tz,
     /// Where the missions are: a folder, a glob or an archive.
     pub missions_path: String,
+    /// How mission files look.
+    pub mission_format: MissionFormat,
     /// Buses that count; none means all.
     pub buses: Vec<u32>,
     /// How missions become segments.
@@ -144,6 +146,7 @@ impl Study {
             site,
             zone,
             missions_path: file.missions.path.clone(),
+            mission_format: ready::mission_format(&file.missions)?,
             buses: file.missions.buses.clone(),
             missions,
             forget_missing: file.missions.forget_missing,

@@ -1,7 +1,7 @@
 //! From what was typed to what is meant: names looked up, ranges checked, lists expanded.
 
 use cabin::{ComfortWindow, Cop, Design, Devices, Heating, named_cooling_cops, named_heating_cops};
-use ingest::mission::MissionOptions;
+use ingest::mission::{Door, MissionFormat, MissionOptions, TelemetryMap, Vehicle};
 use ingest::weather::{Clock, ColumnMap, IrradianceUnit, TemperatureUnit, TimeLabel, WeatherFormat};
 use solve::Method;
 use store::DesignRow;
@@ -21,9 +21,79 @@ pub(crate) fn mission_options(missions: &file::Missions) -> Result<MissionOption
     }
     Ok(MissionOptions {
         segment_s: missions.segment_s,
-        door_open_share: missions.door_open_share,
+        // A share of the doors is one of all doors.
+        door_open_share: if missions.door_share_column.is_some() { 1.0 } else { missions.door_open_share },
         keep_partial: missions.keep_partial,
     })
+}
+
+/// How mission files look.
+pub(crate) fn mission_format(missions: &file::Missions) -> Result<MissionFormat, String> {
+    let m = missions;
+    let columns = [
+        ("time_column", m.time_column.is_some()),
+        ("time_zone", m.time_zone.is_some()),
+        ("utc_offset", m.utc_offset.is_some()),
+        ("vehicle_column", m.vehicle_column.is_some()),
+        ("vehicle", m.vehicle.is_some()),
+        ("passengers_column", m.passengers_column.is_some()),
+        ("door_column", m.door_column.is_some()),
+        ("door_share_column", m.door_share_column.is_some()),
+        ("speed_column", m.speed_column.is_some()),
+        ("speed_unit", m.speed_unit.is_some()),
+        ("power_column", m.power_column.is_some()),
+        ("power_unit", m.power_unit.is_some()),
+        ("route_column", m.route_column.is_some()),
+        ("hold_s", m.hold_s.is_some()),
+        ("cut_gap_s", m.cut_gap_s.is_some()),
+    ];
+    if m.format == file::Telemetry::ZtBus {
+        return match columns.iter().find(|(_, given)| *given) {
+            Some((name, _)) => Err(format!("[missions] {name} belongs to format = \"csv\" only; remove it")),
+            None => Ok(MissionFormat::ZtBus),
+        };
+    }
+    let needed = |name: &str| format!("[missions] format = \"csv\" needs {name}");
+    let one_of = |a: &str, b: &str| format!("[missions] has both {a} and {b}; remove one of them");
+    let (hold_s, cut_gap_s) = (m.hold_s.unwrap_or(60), m.cut_gap_s.unwrap_or(900));
+    for (name, value) in [("hold_s", hold_s), ("cut_gap_s", cut_gap_s)] {
+        if !(1..=86_400).contains(&value) {
+            return Err(format!("[missions] {name} = {value} must lie between 1 and 86400"));
+        }
+    }
+    Ok(MissionFormat::Csv(std::sync::Arc::new(TelemetryMap {
+        time_column: m.time_column.clone().ok_or_else(|| needed("time_column"))?,
+        clock: clock("missions", m.time_zone.as_deref(), m.utc_offset.as_deref())?,
+        vehicle: match (&m.vehicle_column, m.vehicle) {
+            (Some(column), None) => Vehicle::Column(column.clone()),
+            (None, Some(number)) => Vehicle::Number(number),
+            (None, None) => return Err(needed("vehicle_column, or vehicle = NUMBER")),
+            (Some(_), Some(_)) => return Err(one_of("vehicle_column", "vehicle")),
+        },
+        passengers_column: m.passengers_column.clone().ok_or_else(|| needed("passengers_column"))?,
+        door: match (&m.door_column, &m.door_share_column) {
+            (Some(column), None) => Door::Flag(column.clone()),
+            (None, Some(column)) => Door::Share(column.clone()),
+            (None, None) => return Err(needed("door_column or door_share_column")),
+            (Some(_), Some(_)) => return Err(one_of("door_column", "door_share_column")),
+        },
+        speed_column: m.speed_column.clone(),
+        speed_unit_m_s: factor("speed_unit", m.speed_unit.as_deref(), &[("m/s", 1.0), ("km/h", 1.0 / 3.6)])?,
+        power_column: m.power_column.clone(),
+        power_unit_w: factor("power_unit", m.power_unit.as_deref(), &[("W", 1.0), ("kW", 1000.0)])?,
+        route_column: m.route_column.clone(),
+        hold_s,
+        cut_gap_s,
+    })))
+}
+
+/// What one of a unit is; the first of all without a name.
+fn factor(key: &str, given: Option<&str>, units: &[(&str, f64)]) -> Result<f64, String> {
+    let found = given.map_or(units.first(), |given| units.iter().find(|(name, _)| *name == given));
+    let known: Vec<&str> = units.iter().map(|(name, _)| *name).collect();
+    let error =
+        || format!("[missions] {key} = {:?} is not known; known are: {}", given.unwrap_or_default(), known.join(", "));
+    found.map(|(_, factor)| *factor).ok_or_else(error)
 }
 
 pub(crate) fn weather_format(weather: &file::Weather) -> Result<WeatherFormat, String> {
@@ -62,7 +132,7 @@ pub(crate) fn weather_format(weather: &file::Weather) -> Result<WeatherFormat, S
                     file::TimeLabel::Middle => TimeLabel::Middle,
                     file::TimeLabel::End => TimeLabel::End,
                 },
-                clock: clock(weather)?,
+                clock: clock("weather", weather.time_zone.as_deref(), weather.utc_offset.as_deref())?,
                 interval_s,
                 reference_year: weather.reference_year,
                 temperature_unit: unit(
@@ -91,16 +161,16 @@ pub(crate) fn weather_format(weather: &file::Weather) -> Result<WeatherFormat, S
 }
 
 /// What stamps without an offset mean.
-fn clock(weather: &file::Weather) -> Result<Clock, String> {
-    match (&weather.time_zone, &weather.utc_offset) {
+fn clock(section: &str, zone: Option<&str>, offset: Option<&str>) -> Result<Clock, String> {
+    match (zone, offset) {
         (None, None) => Ok(Clock::Utc),
         (Some(zone), None) => match zone.parse() {
             Ok(zone) => Ok(Clock::Zone(zone)),
-            Err(_) => Err(format!("[weather] time_zone = {zone:?} is not known; take one such as \"Europe/Zurich\"")),
+            Err(_) => Err(format!("[{section}] time_zone = {zone:?} is not known; take one such as \"Europe/Zurich\"")),
         },
         (None, Some(offset)) => Clock::of_offset(offset)
-            .ok_or_else(|| format!("[weather] utc_offset = {offset:?} is no offset; write one such as \"+01:00\"")),
-        (Some(_), Some(_)) => Err("[weather] has both time_zone and utc_offset; remove one of them".to_owned()),
+            .ok_or_else(|| format!("[{section}] utc_offset = {offset:?} is no offset; write one such as \"+01:00\"")),
+        (Some(_), Some(_)) => Err(format!("[{section}] has both time_zone and utc_offset; remove one of them")),
     }
 }
 

@@ -153,7 +153,12 @@ impl Scratch {
     }
 
     pub fn query(&self, sql: &str) -> Vec<Vec<String>> {
-        Store::open_read_only(&self.path("study.db")).unwrap().query_text(sql).unwrap()
+        self.query_of("study.db", sql)
+    }
+
+    /// The same of another database.
+    pub fn query_of(&self, database: &str, sql: &str) -> Vec<Vec<String>> {
+        Store::open_read_only(&self.path(database)).unwrap().query_text(sql).unwrap()
     }
 
     /// The rows of a query to the last bit, in a sorted order of their own.

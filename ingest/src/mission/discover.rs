@@ -3,7 +3,9 @@
 use chrono::{DateTime, NaiveDateTime, TimeDelta, Utc};
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Arc;
 
+use super::table::{Index, Part, TelemetryMap, index};
 use crate::walk::{Found, Place, walk};
 use crate::{Content, FileKind, FileReader, FileRecord, FileStamp, Finding, FindingKind, IngestError};
 
@@ -11,7 +13,7 @@ use crate::{Content, FileKind, FileReader, FileRecord, FileStamp, Finding, Findi
 const MAX_DURATION: TimeDelta = TimeDelta::days(7);
 
 /// A mission file that was found.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct MissionSource {
     /// Name of the mission: the file's name without its extension.
     pub name: String,
@@ -24,10 +26,21 @@ pub struct MissionSource {
     /// Last second, from the name.
     pub end: DateTime<Utc>,
     place: Place,
+    /// Which part of its file the mission is; `None` where it is all of it.
+    part: Option<Arc<Part>>,
+}
+
+/// How mission files look.
+#[derive(Debug, Clone, PartialEq)]
+pub enum MissionFormat {
+    /// ZTBus, a file for each mission.
+    ZtBus,
+    /// Tables with columns of other names.
+    Csv(Arc<TelemetryMap>),
 }
 
 /// What was found where the study says that missions are.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Discovery {
     /// The missions of the wanted buses, by name.
     pub missions: Vec<MissionSource>,
@@ -44,11 +57,14 @@ pub struct Discovery {
 ///
 /// # Errors
 /// [`IngestError`] where the path does not exist or holds no mission.
-pub fn discover(base: &Path, pattern: &str, buses: &[u32]) -> Result<Discovery, IngestError> {
+pub fn discover(base: &Path, pattern: &str, format: &MissionFormat, buses: &[u32]) -> Result<Discovery, IngestError> {
     let mut found = Discovery::default();
-    let walked = walk(base, pattern, &["csv"])?;
+    let walked = walk(base, pattern, if *format == MissionFormat::ZtBus { &["csv"] } else { &["csv", "txt"] })?;
     walked.refused.into_iter().for_each(|(path, finding)| found.refuse(&path, finding));
-    walked.found.into_iter().for_each(|file| found.take(file));
+    match format {
+        MissionFormat::ZtBus => walked.found.into_iter().for_each(|file| found.take(file)),
+        MissionFormat::Csv(map) => found.take_tables(walked.found, map),
+    }
     let mut others: Vec<u32> = found.missions.iter().map(|m| m.bus).collect();
     found.missions.retain(|m| buses.is_empty() || buses.contains(&m.bus));
     found.missions.sort_by(|a, b| (&a.name, &a.path).cmp(&(&b.name, &b.path)));
@@ -61,7 +77,7 @@ pub fn discover(base: &Path, pattern: &str, buses: &[u32]) -> Result<Discovery, 
             (false, _) => format!("of the buses {buses:?}, but of {others:?}; change `buses`"),
             (true, Some(file)) => format!("that can be used; {}: {}", file.path, file.findings[0]),
             (true, None) => {
-                "(files named B183_2021-07-26_03-53-27_2021-07-26_07-18-47.csv, or a .zip of them)".to_owned()
+                "(files named B183_2021-07-26_03-53-27_2021-07-26_07-18-47.csv, a .zip of them, or, with format = \"csv\", tables)".to_owned()
             }
         };
         return Err(IngestError::NoMissions { path: base.join(pattern), detail });
@@ -77,9 +93,43 @@ impl Discovery {
         }
         match parse_name(&stem) {
             Ok((bus, start, end)) => {
-                self.missions.push(MissionSource { name: stem, path: label, bus, start, end, place });
+                self.missions.push(MissionSource { name: stem, path: label, bus, start, end, place, part: None });
             }
             Err(reason) => self.refuse(&label, Finding::whole(FindingKind::NotAMission, reason)),
+        }
+    }
+
+    /// Tables; each is read to know its missions.
+    fn take_tables(&mut self, files: Vec<Found>, map: &Arc<TelemetryMap>) {
+        let mut reader = FileReader::default();
+        for Found { label, name, place } in files {
+            if name.to_lowercase().starts_with("metadata") {
+                continue;
+            }
+            let indexed = place.read(&mut reader).and_then(|content| {
+                let indexed = index(&content.bytes, map);
+                reader.recycle(content);
+                indexed
+            });
+            let Index { parts, note } = match indexed {
+                Ok(indexed) => indexed,
+                Err(finding) => {
+                    self.refuse(&label, finding);
+                    continue;
+                }
+            };
+            if let Some(note) = note {
+                self.refuse(&format!("{label}!"), note);
+            }
+            for part in parts {
+                let time = |second| DateTime::from_timestamp(second, 0).unwrap_or_default();
+                let (start, end) = (time(part.span.0), time(part.span.1));
+                let form = "%Y-%m-%d_%H-%M-%S";
+                let name = format!("B{}_{}_{}", part.bus, start.format(form), end.format(form));
+                let (path, bus) = (format!("{label}!{name}"), part.bus);
+                let place = place.clone();
+                self.missions.push(MissionSource { name, path, bus, start, end, place, part: Some(Arc::new(part)) });
+            }
         }
     }
 
@@ -139,23 +189,29 @@ impl MissionSource {
         let name = path.file_stem()?.to_string_lossy().into_owned();
         let (bus, start, end) = parse_name(&name).ok()?;
         let place = Place::File(path.to_owned());
-        Some(Self { name, path: path.to_string_lossy().into_owned(), bus, start, end, place })
+        Some(Self { name, path: path.to_string_lossy().into_owned(), bus, start, end, place, part: None })
     }
 
-    /// Reads the bytes.
+    /// Reads the bytes; of a table with many missions, the header and its own records.
     ///
     /// # Errors
     /// The record of a refused file.
     pub fn load(&self, reader: &mut FileReader) -> Result<Content, Box<FileRecord>> {
-        self.place
-            .read(reader)
-            .map_err(|finding| Box::new(FileRecord::refused(&self.path, FileKind::Mission, "", 0, finding)))
+        let content = match &self.part {
+            None => self.place.read(reader),
+            Some(part) => self.place.read_pieces(&part.pieces, reader),
+        };
+        content.map_err(|finding| Box::new(FileRecord::refused(&self.path, FileKind::Mission, "", 0, finding)))
     }
 
     /// Size of the content in bytes, as the system or the archive says; 0 where it does not.
     #[must_use]
     pub fn bytes(&self) -> u64 {
         self.place.bytes()
+    }
+
+    pub(super) fn part(&self) -> Option<&Part> {
+        self.part.as_deref()
     }
 
     /// The stamp of the file, or of the archive that it lies in.

@@ -1,17 +1,20 @@
-//! ZTBus missions: where they are found, and what their telemetry says of each segment.
+//! Missions: where they are found, and what their telemetry says of each segment. ZTBus has a file for each; the tables of
+//! other operators (`table`) have one or many.
 
 mod discover;
 mod rows;
+mod table;
 
 use cabin::LoadChange;
 use chrono::{DateTime, TimeDelta, Utc};
 
 use crate::segments::{Clock, Sums};
-use crate::telemetry::{TIME, Telemetry};
+use crate::telemetry::{Table, Telemetry};
 use crate::{Content, ExcludedSegment, ExclusionReason, FileKind, FileRecord, Finding, FindingKind};
-use rows::{Reader, Routes};
+use rows::{Reader, Routes, Rules};
 
-pub use discover::{Discovery, MissionSource, discover, mission_name, overlaps, span_of_name};
+pub use discover::{Discovery, MissionFormat, MissionSource, discover, mission_name, overlaps, span_of_name};
+pub use table::{Door, TelemetryMap, Vehicle};
 
 /// Share of a segment's seconds that may be without telemetry.
 const MAX_MISSING_SHARE: f64 = 0.01;
@@ -95,22 +98,31 @@ pub fn read(source: &MissionSource, content: &Content, options: &MissionOptions)
         end_s: source.end.timestamp() + 1,
         segment_s: i64::from(options.segment_s),
     };
-    let mut reader = Reader::new(clock);
-    let rows = match Telemetry::read(&content.bytes).and_then(|telemetry| telemetry.for_each(|row| reader.take(row))) {
+    let part = source.part();
+    let rules =
+        part.map_or(Rules::ZTBUS, |part| Rules { doors_are_shares: part.map.door.is_share(), hold_s: part.map.hold_s });
+    let mut reader = Reader::new(clock, rules);
+    let table = part.map_or_else(|| Table::ztbus(&content.bytes), |part| part.table(&content.bytes));
+    let read = match part {
+        Some(part) => part.read(&content.bytes, &mut reader),
+        None => Telemetry::read(&content.bytes).and_then(|telemetry| telemetry.for_each(|row| reader.take(row))),
+    };
+    let rows = match read {
         Ok(rows) => rows,
         Err(finding) => return refused(finding),
     };
     let Reader { adder, notes, span, last_line, loads, routes, .. } = reader;
-    if let Some(finding) = notes.refusal(rows, &content.bytes) {
+    if let Some(finding) = notes.refusal(rows, &table) {
         return refused(finding);
     }
     let Some((first_s, last_s)) = span else {
         let (start, end) = (source.start, source.end);
-        let message = format!("no row lies between {start} and {end}, as the file's name says; check name and {TIME}");
-        return refused(Finding::whole(FindingKind::RefusedRow, message).in_column(TIME));
+        let message =
+            format!("no row lies between {start} and {end}, as the file's name says; check name and {}", table.time);
+        return refused(Finding::whole(FindingKind::RefusedRow, message).in_column(table.time));
     };
 
-    let mut findings = notes.findings(&content.bytes, last_s);
+    let mut findings = notes.findings(last_s, &table);
     if last_s + 1 < clock.end_s {
         let message = format!(
             "the telemetry ends {} s before the file's name says; whole segments are kept: fetch the file again",
@@ -169,7 +181,7 @@ fn segments(
                 start,
                 duration_s: duration_s as u32,
                 passengers: sums.passenger_seconds / duration_s as f64,
-                door_open_fraction: sums.door_seconds as f64 / duration_s as f64 * options.door_open_share,
+                door_open_fraction: sums.door_seconds / duration_s as f64 * options.door_open_share,
                 distance_m: mean(sums.speed).map(|speed_m_s| speed_m_s * duration_s as f64),
                 vehicle_power_w: mean(sums.power),
                 route: routes.of(number),

@@ -4,7 +4,7 @@ use cabin::LoadChange;
 
 use crate::parse::likely_cause;
 use crate::segments::{Adder, Clock, Drive};
-use crate::telemetry::{AMBIENT, DOOR, PASSENGERS, POWER, Row, SPEED, TIME};
+use crate::telemetry::{Row, Table};
 use crate::{Finding, FindingKind};
 
 /// Largest believable number of passengers: an articulated bus holds about 150.
@@ -116,12 +116,32 @@ pub(super) struct Reader<'b> {
     pub last_line: u64,
     pub loads: Vec<LoadChange>,
     pub routes: Routes<'b>,
+    /// How the rows are to be understood.
+    rules: Rules,
+    /// What the last row says of how the bus drives: line, second, drive, route.
+    last: Option<(u64, i64, Drive, &'b [u8])>,
+}
+
+/// How rows are to be understood.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Rules {
+    /// Whether they say a share of the doors instead of whether one is open.
+    pub doors_are_shares: bool,
+    /// How long a row holds when none follows, in s.
+    pub hold_s: u32,
+}
+
+impl Rules {
+    /// One row a second, and flags.
+    pub const ZTBUS: Self = Self { doors_are_shares: false, hold_s: 1 };
 }
 
 impl<'b> Reader<'b> {
-    pub fn new(clock: Clock) -> Self {
+    pub fn new(clock: Clock, rules: Rules) -> Self {
         Self {
             clock,
+            rules,
+            last: None,
             adder: Adder::new(clock),
             notes: Notes::default(),
             span: None,
@@ -138,13 +158,19 @@ impl<'b> Reader<'b> {
         if time_s < self.clock.start_s || time_s >= self.clock.end_s {
             return notes.outside.at(i);
         }
-        let next_s = self.adder.next_s();
         if let Some((_, last_s)) = self.span
             && time_s <= last_s
         {
             let note = if time_s == last_s { &mut notes.duplicate } else { &mut notes.backwards };
             return note.at(i);
         }
+        if let Some((line, last_s, drive, route)) = self.last {
+            for second in last_s + 1..time_s.min(last_s + i64::from(self.rules.hold_s)) {
+                let segment = self.adder.add(line, second, self.adder.state(), drive);
+                self.routes.add(segment, route);
+            }
+        }
+        let next_s = self.adder.next_s();
         if time_s > next_s {
             notes.gaps.at(i);
             notes.gap_seconds += time_s - next_s;
@@ -162,8 +188,8 @@ impl<'b> Reader<'b> {
             None => notes.unreadable_passengers.at(i),
         }
         match row.door {
-            Some(1.0) => state.door_open = true,
-            Some(0.0) => state.door_open = false,
+            Some(open @ (0.0 | 1.0)) => state.door_open = open,
+            Some(share) if self.rules.doors_are_shares && (0.0..=1.0).contains(&share) => state.door_open = share,
             Some(flag) if flag.is_nan() => {
                 notes.missing_door.at(i);
                 notes.last_missing_door_s = time_s;
@@ -186,17 +212,18 @@ impl<'b> Reader<'b> {
         };
         let segment = self.adder.add(i, time_s, state, drive);
         self.routes.add(segment, row.route);
+        self.last = Some((i, time_s, drive, row.route));
         self.span = Some((self.span.map_or(time_s, |(first, _)| first), time_s));
     }
 }
 
 impl Notes {
     /// Why a mission of so many rows is refused: a needed column that is mostly unusable.
-    pub fn refusal(&self, rows: u64, bytes: &[u8]) -> Option<Finding> {
+    pub fn refusal(&self, rows: u64, table: &Table<'_>) -> Option<Finding> {
         let columns = [
-            (TIME, self.unreadable_time, Note::default(), rows),
-            (PASSENGERS, self.unreadable_passengers, self.impossible_passengers, rows - self.missing_passengers),
-            (DOOR, self.unreadable_door, self.impossible_door, rows - self.missing_door.count),
+            (table.time, self.unreadable_time, Note::default(), rows),
+            (table.passengers, self.unreadable_passengers, self.impossible_passengers, rows - self.missing_passengers),
+            (table.door, self.unreadable_door, self.impossible_door, rows - self.missing_door.count),
         ];
         columns.into_iter().find_map(|(column, unreadable, impossible, values)| {
             let unusable = unreadable.count + impossible.count;
@@ -205,7 +232,7 @@ impl Notes {
                 return None;
             }
             let line = unreadable.line.or(impossible.line)?;
-            let text = text_at(bytes, line, column).unwrap_or_default();
+            let text = table.text_at(line, column).unwrap_or_default();
             let message = format!(
                 "{text:?}: {unusable} of {values} values cannot be used, more than {:.0} %; probably {}",
                 100.0 * MAX_UNUSABLE_SHARE,
@@ -215,9 +242,10 @@ impl Notes {
         })
     }
 
-    pub fn findings(mut self, bytes: &[u8], last_s: i64) -> Vec<Finding> {
+    pub fn findings(mut self, last_s: i64, table: &Table<'_>) -> Vec<Finding> {
         use FindingKind::{
-            DuplicateRow, MissingValue, NegativeOffset, OutOfRange, RefusedRow, RefusedValue, TimeGap, WrongUnit,
+            DuplicateRow, MissingValue, NegativeOffset, OutOfRange, RefusedRow, RefusedValue, TimeGap, UnusedValue,
+            WrongUnit,
         };
         // The last row of a mission may have no flags: nothing follows that would need them.
         if self.missing_door.count == 1 && self.last_missing_door_s == last_s {
@@ -225,34 +253,39 @@ impl Notes {
         }
         let gaps = format!("{} s without a row; the state before holds", self.gap_seconds);
         let notes: [(Note, FindingKind, &str, &str); 17] = [
-            (self.unreadable_time, RefusedRow, TIME, "not a whole number of seconds since 1970; correct the rows"),
-            (self.outside, RefusedRow, TIME, "outside the span that the file's name says; correct rows or name"),
-            (self.backwards, RefusedRow, TIME, "time runs backwards; sort the file by time"),
-            (self.duplicate, DuplicateRow, TIME, "the same second again; the first row counts"),
-            (self.gaps, TimeGap, TIME, &gaps),
-            (self.unreadable_passengers, RefusedValue, PASSENGERS, "not a number; the last count holds"),
-            (self.impossible_passengers, OutOfRange, PASSENGERS, "outside 0 … 250 passengers; the last count holds"),
+            (self.unreadable_time, RefusedRow, table.time, "not a time that can be read; correct the rows"),
+            (self.outside, RefusedRow, table.time, "outside the span that the file's name says; correct rows or name"),
+            (self.backwards, RefusedRow, table.time, "time runs backwards; sort the file by time"),
+            (self.duplicate, DuplicateRow, table.time, "the same second again; the first row counts"),
+            (self.gaps, TimeGap, table.time, &gaps),
+            (self.unreadable_passengers, RefusedValue, table.passengers, "not a number; the last count holds"),
+            (
+                self.impossible_passengers,
+                OutOfRange,
+                table.passengers,
+                "outside 0 … 250 passengers; the last count holds",
+            ),
             (
                 self.drifted_passengers,
                 NegativeOffset,
-                PASSENGERS,
+                table.passengers,
                 "the counter drifts below none; taken as an empty bus",
             ),
-            (self.unreadable_door, RefusedValue, DOOR, "not 0, 1 or NaN; the last state holds"),
-            (self.impossible_door, OutOfRange, DOOR, "not 0, 1 or NaN; the last state holds"),
-            (self.missing_door, MissingValue, DOOR, "no state; the last one holds"),
-            (self.unreadable_ambient, RefusedValue, AMBIENT, "not a number; the column is checked, not used"),
-            (self.unreadable_speed, RefusedValue, SPEED, "not a number; taken as missing"),
-            (self.impossible_speed, OutOfRange, SPEED, "outside -5 … 50 m/s; taken as missing"),
-            (self.unreadable_power, RefusedValue, POWER, "not a number; taken as missing"),
-            (self.impossible_power, OutOfRange, POWER, "outside -2 … 2 MW; taken as missing"),
-            (self.celsius, WrongUnit, AMBIENT, "below 150 K, probably in °C; the column is checked, not used"),
+            (self.unreadable_door, RefusedValue, table.door, "not 0, 1 or NaN; the last state holds"),
+            (self.impossible_door, OutOfRange, table.door, "not 0, 1 or NaN; the last state holds"),
+            (self.missing_door, MissingValue, table.door, "no state; the last one holds"),
+            (self.unreadable_ambient, UnusedValue, table.ambient, "not a number; the column is checked, not used"),
+            (self.unreadable_speed, UnusedValue, table.speed, "not a number; taken as missing"),
+            (self.impossible_speed, UnusedValue, table.speed, "outside -5 … 50 m/s; taken as missing"),
+            (self.unreadable_power, UnusedValue, table.power, "not a number; taken as missing"),
+            (self.impossible_power, UnusedValue, table.power, "outside -2 … 2 MW; taken as missing"),
+            (self.celsius, WrongUnit, table.ambient, "below 150 K, probably in °C; the column is checked, not used"),
         ];
         let noticed = notes.into_iter().filter_map(|(note, kind, column, message)| {
             let line = note.line?;
             let text = match kind {
-                RefusedRow | RefusedValue | OutOfRange | WrongUnit | NegativeOffset => {
-                    match text_at(bytes, line, column) {
+                RefusedRow | RefusedValue | UnusedValue | OutOfRange | WrongUnit | NegativeOffset => {
+                    match table.text_at(line, column) {
                         Some(text) => format!("{text:?}: {message}"),
                         None => message.to_owned(),
                     }
@@ -264,16 +297,4 @@ impl Notes {
         });
         noticed.collect()
     }
-}
-
-/// The text of a field on a line, cut to a length that fits a message.
-fn text_at(bytes: &[u8], line: u64, column: &str) -> Option<String> {
-    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    let position = csv::Reader::from_reader(bytes).headers().ok()?.iter().position(|h| h.trim() == column)?;
-    let before = usize::try_from(line).ok()?.checked_sub(2)?;
-    let start = bytes.iter().enumerate().filter(|(_, b)| **b == b'\n').nth(before)?.0 + 1;
-    let end = bytes[start..].iter().position(|&b| b == b'\n').map_or(bytes.len(), |n| start + n);
-    let mut reader = csv::ReaderBuilder::new().has_headers(false).flexible(true).from_reader(&bytes[start..end]);
-    let record = reader.byte_records().next()?.ok()?;
-    Some(String::from_utf8_lossy(record.get(position)?).chars().take(40).collect())
 }

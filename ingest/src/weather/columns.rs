@@ -1,10 +1,10 @@
 //! Any CSV file with one row per interval, its columns named by the study.
 
 use super::format::{Column, Extent, Format, Layout, RowOrder, TimeLabel};
-use super::stamp::{Clock, Stamp};
 use super::units::{IrradianceUnit, TemperatureUnit, Units};
 use super::values::PerQuantity;
 use crate::Finding;
+use crate::stamp::{Clock, Stamp};
 
 /// The name in study files.
 pub(crate) const NAME: &str = "csv";

@@ -4,9 +4,9 @@
 use chrono::{NaiveDate, NaiveTime};
 
 use super::format::{Column, Extent, Format, IntervalGrid, Layout};
-use super::stamp::Stamp;
 use super::units::{IrradianceUnit, TemperatureUnit, Units};
 use super::values::PerQuantity;
+use crate::stamp::Stamp;
 use crate::{Finding, FindingKind};
 
 /// The name in study files.

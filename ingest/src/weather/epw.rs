@@ -4,8 +4,8 @@
 use chrono::NaiveDate;
 
 use super::format::{Column, Extent, Format, Layout, RowOrder};
-use super::stamp::{Clock, Stamp};
 use super::values::PerQuantity;
+use crate::stamp::{Clock, Stamp};
 use crate::{Finding, FindingKind};
 
 /// The name in study files.

@@ -2,10 +2,10 @@
 
 use std::ops::Range;
 
-use super::stamp::{Clock, Stamp};
 use super::units::Units;
 use super::values::{PerQuantity, Quantity};
 use crate::Finding;
+use crate::stamp::{Clock, Stamp};
 
 /// A format: how its files are known, how they are laid out, and what their stamps mean.
 pub(crate) trait Format {

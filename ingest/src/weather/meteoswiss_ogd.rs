@@ -3,9 +3,9 @@
 use chrono::NaiveDateTime;
 
 use super::format::{Column, Extent, Format, Layout};
-use super::stamp::Stamp;
 use super::values::PerQuantity;
 use crate::Finding;
+use crate::stamp::Stamp;
 
 /// The name in study files.
 pub(crate) const NAME: &str = "meteoswiss-ogd";

@@ -20,7 +20,6 @@ mod pvgis;
 mod rows;
 mod series;
 mod sia4028;
-mod stamp;
 mod stations;
 mod sunlight;
 mod table;
@@ -37,12 +36,12 @@ use format::Format;
 use join::join;
 use table::{Table, read_content, read_file};
 
+pub use crate::stamp::Clock;
 pub use columns::ColumnMap;
 pub use discover::{WeatherFile, WeatherFiles, discover, looks_like};
 pub use format::TimeLabel;
 pub use join::IrradianceSplit;
 pub use series::{Weather, WeatherMean};
-pub use stamp::Clock;
 pub use units::{IrradianceUnit, TemperatureUnit};
 
 /// How weather files look.

@@ -2,9 +2,9 @@
 //! the hour before the stamp.
 
 use super::format::{Column, Extent, Format, Layout};
-use super::stamp::{Clock, Stamp};
 use super::units::{IrradianceUnit, TemperatureUnit, Units};
 use super::values::PerQuantity;
+use crate::stamp::{Clock, Stamp};
 use crate::{Finding, FindingKind};
 
 /// The name in study files.

@@ -4,8 +4,8 @@
 use chrono::{NaiveDateTime, Timelike};
 
 use super::format::{Column, Extent, Format, Layout, RowOrder, TimeLabel};
-use super::stamp::Stamp;
 use super::values::PerQuantity;
+use crate::stamp::Stamp;
 use crate::{Finding, FindingKind};
 
 /// The name in study files.

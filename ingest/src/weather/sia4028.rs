@@ -4,9 +4,9 @@
 use chrono::NaiveDate;
 
 use super::format::{Column, Extent, Format, Layout, RowOrder, TimeLabel};
-use super::stamp::Stamp;
 use super::values::PerQuantity;
 use crate::Finding;
+use crate::stamp::Stamp;
 
 /// From this year on the months of a file are stamped at the end of the hour.
 const END_STAMPS_FROM: i32 = 2018;

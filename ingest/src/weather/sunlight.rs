@@ -8,9 +8,9 @@ use std::f64::consts::{PI, TAU};
 use super::format::{Layout, TimeLabel};
 use super::intervals::Interval;
 use super::plausible::other_units;
-use super::stamp::Clock;
 use super::values::{Quantity, Values};
 use crate::irradiance::extraterrestrial_w_m2;
+use crate::stamp::Clock;
 use crate::{Finding, FindingKind};
 
 /// With the sun lower than this all through an interval it is night: beyond refraction, the sun's radius and this module's

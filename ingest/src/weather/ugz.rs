@@ -2,8 +2,8 @@
 //! its start.
 
 use super::format::{Column, Extent, Format, Layout, Long, TimeLabel};
-use super::stamp::Stamp;
 use super::values::PerQuantity;
+use crate::stamp::Stamp;
 use crate::{Finding, FindingKind};
 
 /// The name in study files.
