@@ -6,7 +6,7 @@ use pipeline::{Done, Progress, StageEnd, Work};
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::flag;
 use std::fmt;
-use std::io::{IsTerminal, Write, stderr, stdout};
+use std::io::{ErrorKind, IsTerminal, Write, stderr, stdout};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use tracing_subscriber::filter::LevelFilter;
@@ -135,7 +135,10 @@ impl Progress for Console {
     }
 }
 
-/// A line of result on stdout.
+/// A line of result on stdout. Where the reader has heard enough and is gone, the rest is nobody's.
 pub fn say(line: fmt::Arguments) -> Result<(), Failure> {
-    writeln!(stdout(), "{line}").context("cannot write to stdout").map_err(Failure::Inputs)
+    match writeln!(stdout(), "{line}") {
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
+        written => written.context("cannot write to stdout").map_err(Failure::Inputs),
+    }
 }

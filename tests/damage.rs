@@ -71,6 +71,7 @@ fn cli_what_is_damaged_is_named_with_a_remedy() {
             let run = scratch.expect(3, command);
             let line = format!("study.db is damaged: {what}");
             assert!(run.stderr.contains(&line) && run.stderr.contains("restore the last backup"), "{}", run.stderr);
+            assert!(!scratch.path("study.db-wal").exists(), "a log is left");
         }
         let verify = scratch.expect(1, &["verify", "--fraction", "0"]);
         assert!(verify.stdout.contains("violated: rows and tables as they were written"), "{}", verify.stdout);

@@ -158,6 +158,46 @@ fn cli_missions_are_found_wherever_people_keep_them() {
 }
 
 #[test]
+fn cli_weather_that_is_gone_takes_no_results_away() {
+    let scratch = Scratch::small(4, "[1.0]", "[1.0]");
+    scratch.expect(0, &["run"]);
+    let results = scratch.exact(CONTENT[0]).unwrap();
+    let file = "weather/ogd-smn_sma_h_historical_2020-2029.csv";
+    let text = scratch.read(file);
+    // Half of the file, as a copy that is not done yet.
+    let last = scratch.query("SELECT max(start_utc) FROM sample")[0][0].clone();
+    let half: String = text
+        .lines()
+        .take_while(|line| !line.contains(&german_date(&last)))
+        .fold(String::new(), |t, line| t + line + "\n");
+    scratch.write(file, half);
+    let run = scratch.expect(3, &["run"]);
+    assert!(
+        run.stderr.contains("samples is no longer there, the first: B183_")
+            && run.stderr.contains("outside the weather record; nothing was withdrawn"),
+        "{}",
+        run.stderr
+    );
+    assert!(results == scratch.exact(CONTENT[0]).unwrap());
+    scratch.write(file, &text);
+    scratch.expect(0, &["run"]);
+    assert!(results == scratch.exact(CONTENT[0]).unwrap());
+    scratch.write(
+        file,
+        text.lines()
+            .take_while(|line| !line.contains(&german_date(&last)))
+            .fold(String::new(), |t, line| t + line + "\n"),
+    );
+    scratch.expect(0, &["run", "--forget-missing"]);
+    assert!(results != scratch.exact(CONTENT[0]).unwrap());
+}
+
+/// `2021-07-26T…` as MeteoSwiss writes it.
+fn german_date(utc: &str) -> String {
+    format!("{}.{}.{}", &utc[8..10], &utc[5..7], &utc[..4])
+}
+
+#[test]
 fn cli_missions_that_are_gone_are_said_and_their_results_kept() {
     let scratch = Scratch::small(4, "[1.0]", "[1.0]");
     scratch.expect(0, &["run"]);

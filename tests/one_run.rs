@@ -70,6 +70,20 @@ fn cli_a_database_at_rest_stands_alone() {
 }
 
 #[test]
+fn cli_a_reader_that_leaves_early_is_no_error() {
+    let scratch = small();
+    scratch.expect(0, &["run"]);
+    let mut status = std::process::Command::new(env!("CARGO_BIN_EXE_busclimate"))
+        .args(["status", "study.toml"])
+        .current_dir(scratch.folder.path())
+        .stdout(std::process::Stdio::piped())
+        .spawn()
+        .expect("it starts");
+    drop(status.stdout.take());
+    assert!(status.wait().expect("it ends").success());
+}
+
+#[test]
 fn cli_a_database_of_another_study_is_left_as_it_is() {
     let scratch = small();
     scratch.expect(0, &["run"]);

@@ -331,3 +331,11 @@ pub struct ExcludedSegment {
     /// Why, as an [`ExclusionReason`] or a check of the model says it.
     pub reason: String,
 }
+
+impl ExcludedSegment {
+    /// Whether it is the weather that it lacks.
+    #[must_use]
+    pub fn lacks_weather(&self) -> bool {
+        self.reason == ExclusionReason::OutsideWeather.to_string() || self.reason.starts_with("weather gap")
+    }
+}

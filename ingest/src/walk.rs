@@ -5,7 +5,7 @@ use std::ffi::OsStr;
 use std::ops::Range;
 use std::path::{Component, Path, PathBuf};
 
-use crate::files::{extension, head_of, label, list, open_archive, open_regular, unpacked, unreadable};
+use crate::files::{extension, gzip_size, head_of, label, list, open_archive, open_regular, unpacked, unreadable};
 use crate::{Content, FileReader, FileStamp, Finding, FindingKind, IngestError};
 
 /// Folders in folders that are looked into at most.
@@ -231,8 +231,7 @@ impl Place {
     pub fn bytes(&self) -> u64 {
         match self {
             Self::File(path) => std::fs::metadata(path).map_or(0, |m| m.len()),
-            // What it unpacks to is only known in the end: telemetry shrinks to a tenth.
-            Self::Gzip(path) => std::fs::metadata(path).map_or(0, |m| 12 * m.len()),
+            Self::Gzip(path) => gzip_size(path),
             Self::Entry { bytes, .. } => *bytes,
         }
     }

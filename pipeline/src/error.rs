@@ -1,5 +1,6 @@
 //! Why a pipeline ends early.
 
+use chrono::{DateTime, Utc};
 use ingest::{Finding, IngestError};
 use report::ReportError;
 use shading::ShadowError;
@@ -39,6 +40,21 @@ pub enum PipelineError {
         /// Segments without a sample.
         excluded: usize,
         /// Why the first one has none.
+        reason: String,
+    },
+    /// Weather of stored samples is no longer there.
+    #[error(
+        "the weather of {samples} samples is no longer there, the first: {mission} at {start}, {reason}; nothing was withdrawn: \
+         bring the files back, or run with --forget-missing"
+    )]
+    WeatherGone {
+        /// Samples that would go.
+        samples: usize,
+        /// Mission of the first.
+        mission: String,
+        /// Its start.
+        start: DateTime<Utc>,
+        /// Why it would go.
         reason: String,
     },
     /// What a stage builds on was made from something else.

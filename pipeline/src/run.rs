@@ -89,7 +89,11 @@ pub fn run(study: &Study, stages: &[Stage], options: &Options, progress: &dyn Pr
     study.forget_missing |= options.forget_missing;
     let study = &study;
     let inputs = Inputs::new(study, options.rehash);
-    check_stored(&mut store, options.rehash, progress)?;
+    if let Err(damage) = check_stored(&mut store, options.rehash, progress) {
+        // Whoever looks into it finds one file, without a log beside it.
+        let _ = store.close();
+        return Err(damage);
+    }
     let run_id = if only_report { None } else { Some(store.start_run(now(), PROGRAM_VERSION, &study.hash)?) };
     let mut running = Running { study, stages, inputs, run_id, headline: Vec::new() };
     let outcome = stages.iter().try_for_each(|stage| running.stage(*stage, &mut store, progress));

@@ -1,10 +1,15 @@
 //! Segments, weather, sun and shade into hourly samples.
 
+use ingest::ExcludedSegment;
 use ingest::sample::Surroundings;
+use std::collections::BTreeSet;
 use store::Store;
-use study::Study;
+use study::{Study, keys};
 
 use crate::{Inputs, PipelineError, Work, freshness};
+
+/// The stage whose settings say how weather is read.
+const STAGE: &str = "shade";
 
 pub(crate) fn join(study: &Study, inputs: &Inputs, store: &mut Store) -> Result<Work, PipelineError> {
     if !inputs.rehash() && freshness::samples(inputs, store)?.is_none() {
@@ -28,8 +33,34 @@ pub(crate) fn join(study: &Study, inputs: &Inputs, store: &mut Store) -> Result<
         let reason = excluded.first().map_or_else(|| "there are no segments".to_owned(), |e| e.reason.clone());
         return Err(PipelineError::NoSamples { excluded: excluded.len(), reason });
     }
+    if !study.forget_missing && store.settings(STAGE)? == keys::settings(study, STAGE) {
+        check_weather_gone(&excluded, store)?;
+    }
     let (changed, withdrawn) = store.put_samples(&samples, &excluded, &inputs.records()?)?;
     Ok(work(samples.len() as u64, changed, withdrawn, excluded.len() as u64))
+}
+
+/// Weather that a run before has had and that is no longer there is more likely a share that is half mounted than meant.
+fn check_weather_gone(excluded: &[ExcludedSegment], store: &mut Store) -> Result<(), PipelineError> {
+    if !excluded.iter().any(ExcludedSegment::lacks_weather) {
+        return Ok(());
+    }
+    let stored = store.samples()?;
+    let stored: BTreeSet<(&str, u32)> =
+        stored.iter().map(|s| (s.segment.mission.as_str(), s.segment.segment)).collect();
+    let is_gone = |e: &&ExcludedSegment| e.lacks_weather() && stored.contains(&(e.mission.as_str(), e.segment));
+    match excluded.iter().find(is_gone) {
+        None => Ok(()),
+        Some(first) => {
+            let (samples, first) = (excluded.iter().filter(is_gone).count(), first.clone());
+            Err(PipelineError::WeatherGone {
+                samples,
+                mission: first.mission,
+                start: first.start,
+                reason: first.reason,
+            })
+        }
+    }
 }
 
 fn work(total: u64, computed: u64, withdrawn: u64, excluded: u64) -> Work {

@@ -1,6 +1,8 @@
 //! The share of the road that lies in the shade.
 
-use chrono::{DateTime, Datelike, Duration, DurationRound, TimeZone, Timelike, Utc};
+use chrono::{
+    DateTime, Datelike, Duration, DurationRound, NaiveDate, NaiveDateTime, NaiveTime, TimeZone, Timelike, Utc,
+};
 use std::io::Read;
 
 use crate::hour_of_year;
@@ -83,7 +85,7 @@ impl ShadowYear {
             let line = record.position().map_or(0, csv::Position::line);
             let text = &record[time];
             let bad_time = || ShadowError::Time { line, text: text.to_owned() };
-            let stamp = DateTime::parse_from_rfc3339(text).map_err(|_| bad_time())?.to_utc();
+            let stamp = utc(text).ok_or_else(bad_time)?;
             if stamp.minute() != 0 || stamp.second() != 0 || stamp.nanosecond() != 0 {
                 return Err(bad_time());
             }
@@ -175,6 +177,18 @@ impl ShadowYear {
     fn at_full_hour(&self, hour: DateTime<Utc>) -> f64 {
         self.hourly[hour_of_year(hour)]
     }
+}
+
+/// `2022-01-01T13:00:00Z`, and what is close to it: with a space, without seconds, with an offset; without one it is UTC, as
+/// the column's name says; a date alone is its midnight.
+fn utc(text: &str) -> Option<DateTime<Utc>> {
+    let text = text.replacen(' ', "T", 1).replace('Z', "+00:00");
+    let with_offset = ["%Y-%m-%dT%H:%M:%S%.f%#z", "%Y-%m-%dT%H:%M%#z"];
+    let bare = ["%Y-%m-%dT%H:%M:%S%.f", "%Y-%m-%dT%H:%M"];
+    let found = with_offset.iter().find_map(|form| DateTime::parse_from_str(&text, form).ok()).map(|t| t.to_utc());
+    let found = found
+        .or_else(|| bare.iter().find_map(|form| NaiveDateTime::parse_from_str(&text, form).ok()?.and_utc().into()));
+    found.or_else(|| Some(NaiveDate::parse_from_str(&text, "%Y-%m-%d").ok()?.and_time(NaiveTime::MIN).and_utc()))
 }
 
 fn full_hour(instant: DateTime<Utc>) -> DateTime<Utc> {

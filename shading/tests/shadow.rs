@@ -33,6 +33,19 @@ fn prop_the_reference_year_repeats_by_date_and_leap_days_take_the_28th() {
 }
 
 #[test]
+fn prop_stamps_are_read_as_common_tools_write_them() {
+    let year = ShadowYear::read(file().as_bytes()).unwrap();
+    for (from, to) in
+        [("T", " "), ("+00:00", "Z"), ("+00:00", ""), (":00+00:00", "Z"), ("T00:00:00+00:00", ""), (":00+00:00", "")]
+    {
+        let other = file().replace(from, to);
+        assert_eq!(ShadowYear::read(other.as_bytes()).unwrap(), year, "{to:?} for {from:?}");
+    }
+    let pandas = file().replace('T', " ").replace("+00:00", "");
+    assert_eq!(ShadowYear::read(pandas.as_bytes()).unwrap(), year);
+}
+
+#[test]
 fn prop_between_full_hours_it_is_linear() {
     let year = ShadowYear::read(file().as_bytes()).unwrap();
     assert_eq!(year.at(at(2022, 5, 5, 0)), 0.0);
