@@ -6,7 +6,7 @@
 //! temperature, which makes the solution unique and all temperatures rise with the cabin's.
 
 use crate::{
-    Disturbances, HeatFlows, PassengerViews, PmvModel, Slopes, SolarGains, Temperatures, Vehicle,
+    Disturbances, HeatFlows, PassengerViews, PmvModel, Real, Slopes, SolarGains, Temperatures, Vehicle,
     clothing_insulation_clo,
 };
 
@@ -155,18 +155,31 @@ impl<'a> Cabin<'a> {
     #[must_use]
     #[inline]
     pub fn flows(&self, t: &Temperatures, curtain: bool, air_unit_w: f64, radiant_heater_power_w: f64) -> HeatFlows {
+        self.flows_abreast(t, self.door_loss_share(curtain), air_unit_w, radiant_heater_power_w)
+    }
+
+    /// As [`Cabin::flows`], for one bus or several; `door_loss_share` is [`Cabin::door_loss_share`] of each.
+    #[must_use]
+    #[inline(always)]
+    pub fn flows_abreast<R: Real>(
+        &self,
+        t: &Temperatures<R>,
+        door_loss_share: R,
+        air_unit_w: R,
+        radiant_heater_power_w: R,
+    ) -> HeatFlows<R> {
         let [heater4, interior4, shell4] = [t.radiant_heater_k, t.interior_k, t.shell_inside_k].map(pow4);
         HeatFlows {
-            convection_shell_inside_w: self.g_shell * (t.cabin_k - t.shell_inside_k),
-            convection_interior_w: self.g_interior * (t.interior_k - t.cabin_k),
-            convection_shell_outside_w: self.g_outside * (t.shell_outside_k - self.ambient_k),
-            convection_radiant_heater_w: self.g_heater * (t.radiant_heater_k - t.cabin_k),
-            conduction_shell_w: self.g_conduction * (t.shell_inside_k - t.shell_outside_k),
-            radiation_shell_outside_w: self.r_outside * (pow4(t.shell_outside_k) - pow4(self.ambient_k)),
-            radiation_heater_shell_w: self.r_heater_shell * (heater4 - shell4),
-            radiation_heater_interior_w: self.r_heater_interior * (heater4 - interior4),
-            radiation_interior_shell_w: self.r_interior_shell * (interior4 - shell4),
-            door_w: self.door_w(t.cabin_k, curtain).0,
+            convection_shell_inside_w: (t.cabin_k - t.shell_inside_k) * self.g_shell,
+            convection_interior_w: (t.interior_k - t.cabin_k) * self.g_interior,
+            convection_shell_outside_w: (t.shell_outside_k - self.ambient_k) * self.g_outside,
+            convection_radiant_heater_w: (t.radiant_heater_k - t.cabin_k) * self.g_heater,
+            conduction_shell_w: (t.shell_inside_k - t.shell_outside_k) * self.g_conduction,
+            radiation_shell_outside_w: (pow4(t.shell_outside_k) - pow4(self.ambient_k)) * self.r_outside,
+            radiation_heater_shell_w: (heater4 - shell4) * self.r_heater_shell,
+            radiation_heater_interior_w: (heater4 - interior4) * self.r_heater_interior,
+            radiation_interior_shell_w: (interior4 - shell4) * self.r_interior_shell,
+            door_w: self.door_conductance_w_k(t.cabin_k, door_loss_share) * (t.cabin_k - self.ambient_k),
             passengers_w: self.gains_w[0],
             other_w: self.gains_w[1],
             air_unit_w,
@@ -175,13 +188,23 @@ impl<'a> Cabin<'a> {
         }
     }
 
+    /// The share of the door loss that is left with or without air curtains.
+    #[must_use]
+    #[inline]
+    pub fn door_loss_share(&self, curtain: bool) -> f64 {
+        if curtain { self.curtain_keeps } else { 1.0 }
+    }
+
     /// Door loss in W (eq. qdoor, exact square root) and its slope in W/K.
     #[inline]
     fn door_w(&self, cabin_k: f64, curtain: bool) -> (f64, f64) {
-        let difference = cabin_k - self.ambient_k;
-        let kept = if curtain { self.curtain_keeps } else { 1.0 };
-        let conductance = self.door * kept * difference.abs().sqrt();
-        (conductance * difference, 1.5 * conductance)
+        let conductance = self.door_conductance_w_k(cabin_k, self.door_loss_share(curtain));
+        (conductance * (cabin_k - self.ambient_k), 1.5 * conductance)
+    }
+
+    #[inline(always)]
+    fn door_conductance_w_k<R: Real>(&self, cabin_k: R, door_loss_share: R) -> R {
+        door_loss_share * self.door * (cabin_k - self.ambient_k).abs().sqrt()
     }
 
     /// The surface balances, linearised at the given temperatures.
@@ -212,8 +235,8 @@ impl Linear {
 }
 
 /// Fourth power of a temperature.
-#[inline]
-pub(crate) fn pow4(k: f64) -> f64 {
+#[inline(always)]
+pub(crate) fn pow4<R: Real>(k: R) -> R {
     let square = k * k;
     square * square
 }

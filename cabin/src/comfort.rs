@@ -1,7 +1,7 @@
 //! The mean vote of the passengers, and its slope over the cabin temperature.
 
 use crate::balance::{Linear, pow4};
-use crate::{Cabin, StandardRange, Temperatures, ZERO_CELSIUS_K};
+use crate::{Cabin, Real, StandardRange, Temperatures, ZERO_CELSIUS_K};
 
 /// A passenger who stands for a share of all of them.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,19 +29,16 @@ impl Passenger {
     }
 }
 
-/// The clothing of the two passengers of the quadrature, stepped through time.
+/// Surface temperatures of the clothing of the two passengers of the quadrature, in the standard's kelvin, stepped through
+/// time; in one bus, or in several abreast.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Clothes([Passenger; 2]);
-
-/// Surfaces held at their temperatures.
-const HELD: Linear = Linear { shift_k: [0.0; 4], slopes: [0.0; 4] };
+pub struct Clothes<R = f64>([R; 2]);
 
 impl Cabin<'_> {
     /// Clothing that is settled at the given temperatures.
     #[must_use]
-    pub fn clothes(&self, t: &Temperatures) -> Clothes {
-        let mut clothes =
-            Clothes(self.views.nodes().map(|(view, weight)| Passenger::new(view, weight, t.cabin_k + 5.0)));
+    pub fn clothes<R: Real>(&self, t: &Temperatures<R>) -> Clothes<R> {
+        let mut clothes = Clothes([t.cabin_k + 5.0; 2]);
         for _ in 0..20 {
             self.step_vote(t, &mut clothes);
         }
@@ -50,12 +47,18 @@ impl Cabin<'_> {
 
     /// Mean vote of the passengers at temperatures that change slowly: one Newton step of each clothing from where it was,
     /// which is good to 1e-5 votes where the surfaces have moved by some hundredths of a kelvin.
-    pub fn step_vote(&self, t: &Temperatures, clothes: &mut Clothes) -> f64 {
-        let (vote, _) = self.vote_line(t, &HELD, &mut clothes.0);
-        for passenger in &mut clothes.0 {
-            passenger.step(0.0);
+    #[inline(always)]
+    pub fn step_vote<R: Real>(&self, t: &Temperatures<R>, clothes: &mut Clothes<R>) -> R {
+        let [heater4, interior4, shell4] = [t.radiant_heater_k, t.interior_k, t.shell_inside_k].map(pow4);
+        let air_k = t.cabin_k - STANDARD_SHIFT_K;
+        let mut dry_w_m2 = R::splat(0.0);
+        for ((view, weight), surface_k) in self.views.nodes().into_iter().zip(&mut clothes.0) {
+            let radiant_k = self.radiant_k([heater4, interior4, shell4], view);
+            let (shift_k, dry) = self.pmv.step_surface(*surface_k, air_k, radiant_k - STANDARD_SHIFT_K);
+            *surface_k = *surface_k + shift_k;
+            dry_w_m2 = dry_w_m2 + dry * weight;
         }
-        vote
+        self.pmv.vote(dry_w_m2, R::splat(0.0), t.cabin_k - ZERO_CELSIUS_K).0
     }
 
     /// Mean vote of the passengers where balances and clothing hold to first order, and its slope in 1/K over the cabin
@@ -139,9 +142,14 @@ impl Cabin<'_> {
     }
 
     fn mean_radiant_k(&self, t: &Temperatures, view: f64) -> f64 {
-        let fourth = view * pow4(t.radiant_heater_k)
-            + (1.0 - self.view_interior - view) * pow4(t.shell_inside_k)
-            + self.view_interior * pow4(t.interior_k);
+        self.radiant_k([t.radiant_heater_k, t.interior_k, t.shell_inside_k].map(pow4), view)
+    }
+
+    /// Mean radiant temperature in K of who sees so much of the heaters, from the fourth powers of heaters, interior and inside
+    /// of the shell: T_mr⁴ = F_rh T_rh⁴ + (1 − F_int − F_rh) T_s,i⁴ + F_int T_int⁴ (paper, section 2.2).
+    #[inline(always)]
+    fn radiant_k<R: Real>(&self, [heater4, interior4, shell4]: [R; 3], view: f64) -> R {
+        let fourth = heater4 * view + shell4 * (1.0 - self.view_interior - view) + interior4 * self.view_interior;
         fourth.sqrt().sqrt()
     }
 }

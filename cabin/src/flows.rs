@@ -1,20 +1,20 @@
 //! Temperatures and heat flows of the five thermal reservoirs.
 
-use crate::SolarGains;
+use crate::{Real, SolarGains};
 
-/// Temperatures of the five thermal reservoirs in K.
+/// Temperatures of the five thermal reservoirs in K; of one bus, or of several abreast.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Temperatures {
+pub struct Temperatures<R = f64> {
     /// Cabin air.
-    pub cabin_k: f64,
+    pub cabin_k: R,
     /// Seats and rails.
-    pub interior_k: f64,
+    pub interior_k: R,
     /// Inside of the shell.
-    pub shell_inside_k: f64,
+    pub shell_inside_k: R,
     /// Outside of the shell.
-    pub shell_outside_k: f64,
+    pub shell_outside_k: R,
     /// Radiant heaters.
-    pub radiant_heater_k: f64,
+    pub radiant_heater_k: R,
 }
 
 /// How the settled temperatures change with the cabin temperature, in K/K, each between 0 and 1.
@@ -32,56 +32,55 @@ pub struct Slopes {
 
 /// Every heat flow of the model in W, positive in the direction of the paper's equations.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct HeatFlows {
+pub struct HeatFlows<R = f64> {
     /// Cabin air to the inside of the shell, Q_conv,s,i.
-    pub convection_shell_inside_w: f64,
+    pub convection_shell_inside_w: R,
     /// Interior to cabin air, Q_conv,int.
-    pub convection_interior_w: f64,
+    pub convection_interior_w: R,
     /// Outside of the shell to ambient air, Q_conv,s,o.
-    pub convection_shell_outside_w: f64,
+    pub convection_shell_outside_w: R,
     /// Radiant heaters to cabin air, Q_conv,rh.
-    pub convection_radiant_heater_w: f64,
+    pub convection_radiant_heater_w: R,
     /// Through the shell, outwards, Q_cond.
-    pub conduction_shell_w: f64,
+    pub conduction_shell_w: R,
     /// Outside of the shell to its surroundings, Q_rad,s,o.
-    pub radiation_shell_outside_w: f64,
+    pub radiation_shell_outside_w: R,
     /// Radiant heaters to shell, Q_rad,rh,s.
-    pub radiation_heater_shell_w: f64,
+    pub radiation_heater_shell_w: R,
     /// Radiant heaters to interior, Q_rad,rh,int.
-    pub radiation_heater_interior_w: f64,
+    pub radiation_heater_interior_w: R,
     /// Interior to shell, Q_rad,int,s.
-    pub radiation_interior_shell_w: f64,
+    pub radiation_interior_shell_w: R,
     /// Through open doors, outwards, Q_door (eq. qdoor).
-    pub door_w: f64,
+    pub door_w: R,
     /// From passengers, Q_pass (eq. metabolic-heat).
     pub passengers_w: f64,
     /// From lights, screens and electric components, Q_other.
     pub other_w: f64,
     /// From the air unit, Q_hc; negative when cooling.
-    pub air_unit_w: f64,
+    pub air_unit_w: R,
     /// Electric power of the radiant heaters, P_rh.
-    pub radiant_heater_power_w: f64,
+    pub radiant_heater_power_w: R,
     /// From the sun.
     pub solar: SolarGains,
 }
 
-impl HeatFlows {
+impl<R: Real> HeatFlows<R> {
     /// Net heat into each reservoir in W: heaters, interior, cabin, inside and outside of the shell; zero in steady
     /// state (eq. odes).
     #[must_use]
-    #[inline]
-    pub fn net_w(&self) -> [f64; 5] {
+    #[inline(always)]
+    pub fn net_w(&self) -> [R; 5] {
         [
             self.radiant_heater_power_w
                 - self.convection_radiant_heater_w
                 - self.radiation_heater_interior_w
                 - self.radiation_heater_shell_w,
-            self.solar.interior_w + self.radiation_heater_interior_w
+            self.radiation_heater_interior_w + self.solar.interior_w
                 - self.convection_interior_w
                 - self.radiation_interior_shell_w,
-            self.passengers_w
-                + self.other_w
-                + self.air_unit_w
+            self.air_unit_w
+                + (self.passengers_w + self.other_w)
                 + self.convection_radiant_heater_w
                 + self.convection_interior_w
                 - self.convection_shell_inside_w
@@ -96,7 +95,9 @@ impl HeatFlows {
                 - self.radiation_shell_outside_w,
         ]
     }
+}
 
+impl HeatFlows {
     /// Every flow with its name, in the order of the fields.
     #[must_use]
     pub fn named_w(&self) -> [(&'static str, f64); 17] {

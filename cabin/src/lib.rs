@@ -21,6 +21,7 @@ mod operation;
 mod passengers;
 mod pmv;
 mod random;
+mod real;
 mod solar;
 mod state;
 mod vehicle;
@@ -40,6 +41,7 @@ pub use operation::{Candidate, Infeasible, OperatingMode, Operation, Optimum, Ou
 pub use passengers::{Panel, PassengerViews, ceiling_panels, panel_view_factor, place_passengers};
 pub use pmv::{PmvModel, PmvPoint, StandardRange, predicted_percentage_dissatisfied, water_vapour_pressure_pa};
 pub use random::unit_interval;
+pub use real::Real;
 pub use solar::{SolarGains, roof_irradiance_w_m2, wall_irradiance_w_m2};
 pub use state::{State, Target};
 pub use vehicle::{Vehicle, VehicleError};

@@ -1,5 +1,7 @@
 //! Predicted mean vote and predicted percentage dissatisfied: ISO 7730:2005, Annex D, solved to convergence.
 
+use crate::Real;
+
 /// The predicted mean vote of people with one clothing, activity, air speed and humidity.
 ///
 /// Inside, temperatures are shifted by 273 as in the annex's program, so that its values are met to rounding.
@@ -49,6 +51,14 @@ pub(crate) struct Clothing {
     pub surface: Line,
     /// Radiation and convection from the surface in W/m² after that change.
     pub dry_w_m2: Line,
+}
+
+/// Radiation and convection from the clothing's surface in W/m², and its slopes in W/(m²K).
+struct DryLoss<R> {
+    w_m2: R,
+    per_surface: R,
+    per_air: R,
+    per_radiant: R,
 }
 
 /// Whether a state lies where ISO 7730 (clause 4.1) says that the index should be used.
@@ -159,28 +169,48 @@ impl PmvModel {
     /// With the dry loss L(t) = f_cl (3.96e-8 (t⁴ − t_r⁴) + h_c(t) (t − t_a)) the balance is t + I_cl L = 35.7 °C − 0.028 M.
     #[inline]
     pub(crate) fn clothing(&self, surface_k: f64, air_k: f64, radiant_k: f64) -> Clothing {
+        let (loss, inverse, shift) = self.surface_step(surface_k, air_k, radiant_k);
+        Clothing {
+            surface: Line {
+                value: shift,
+                per_air_k: -self.insulation * loss.per_air * inverse,
+                per_radiant_k: -self.insulation * loss.per_radiant * inverse,
+            },
+            dry_w_m2: Line {
+                value: loss.w_m2 + loss.per_surface * shift,
+                per_air_k: loss.per_air * inverse,
+                per_radiant_k: loss.per_radiant * inverse,
+            },
+        }
+    }
+
+    /// One Newton step of the clothing's surface: by how many K it moves, and the dry loss in W/m² after that.
+    #[inline(always)]
+    pub(crate) fn step_surface<R: Real>(&self, surface_k: R, air_k: R, radiant_k: R) -> (R, R) {
+        let (loss, _, shift) = self.surface_step(surface_k, air_k, radiant_k);
+        (shift, loss.w_m2 + loss.per_surface * shift)
+    }
+
+    /// The dry loss, the inverse slope of the clothing's heat balance over its surface temperature, and the Newton step.
+    #[inline(always)]
+    fn surface_step<R: Real>(&self, surface_k: R, air_k: R, radiant_k: R) -> (DryLoss<R>, R, R) {
+        let loss = self.dry_loss(surface_k, air_k, radiant_k);
+        let inverse = R::splat(1.0) / (loss.per_surface * self.insulation + 1.0);
+        let excess = surface_k + loss.w_m2 * self.insulation - (308.7 - 0.028 * self.metabolic_w_m2);
+        (loss, inverse, -excess * inverse)
+    }
+
+    #[inline(always)]
+    fn dry_loss<R: Real>(&self, surface_k: R, air_k: R, radiant_k: R) -> DryLoss<R> {
         let t = surface_k;
         let (t3, radiant3) = (t * t * t, radiant_k * radiant_k * radiant_k);
         let (convection, convection_slope) = self.convection(t - air_k);
         let radiation = 3.96e-8 * self.area_factor;
-        let loss = radiation * (t3 * t - radiant3 * radiant_k) + self.area_factor * convection;
-        let per_surface = 4.0 * radiation * t3 + self.area_factor * convection_slope;
-        let per_air = -self.area_factor * convection_slope;
-        let per_radiant = -4.0 * radiation * radiant3;
-
-        let inverse = 1.0 / (1.0 + self.insulation * per_surface);
-        let shift = -(t + self.insulation * loss - (308.7 - 0.028 * self.metabolic_w_m2)) * inverse;
-        Clothing {
-            surface: Line {
-                value: shift,
-                per_air_k: -self.insulation * per_air * inverse,
-                per_radiant_k: -self.insulation * per_radiant * inverse,
-            },
-            dry_w_m2: Line {
-                value: loss + per_surface * shift,
-                per_air_k: per_air * inverse,
-                per_radiant_k: per_radiant * inverse,
-            },
+        DryLoss {
+            w_m2: (t3 * t - radiant3 * radiant_k) * radiation + convection * self.area_factor,
+            per_surface: t3 * (4.0 * radiation) + convection_slope * self.area_factor,
+            per_air: convection_slope * -self.area_factor,
+            per_radiant: radiant3 * (-4.0 * radiation),
         }
     }
 
@@ -196,16 +226,16 @@ impl PmvModel {
 
     /// The vote of a dry loss in W/m², and its slope in 1/K, in air of `air_c`; `dry_slope` is the loss's own slope over
     /// the air temperature.
-    #[inline]
-    pub(crate) fn vote(&self, dry_w_m2: f64, dry_slope: f64, air_c: f64) -> (f64, f64) {
+    #[inline(always)]
+    pub(crate) fn vote<R: Real>(&self, dry_w_m2: R, dry_slope: R, air_c: R) -> (R, R) {
         let m = self.metabolic_w_m2;
-        let inverse = 1.0 / (air_c + 235.0);
-        let vapour_pa = self.relative_humidity * 1000.0 * (16.6536 - 4030.183 * inverse).exp();
+        let inverse = R::splat(1.0) / (air_c + 235.0);
+        let vapour_pa = (inverse * -4030.183 + 16.6536).exp() * (self.relative_humidity * 1000.0);
         let vapour_slope = vapour_pa * 4030.183 * inverse * inverse;
         let per_pa = 0.00305 + 1.7e-5 * m;
-        let moist_w_m2 = self.fixed_loss_w_m2 - per_pa * vapour_pa - 0.0014 * m * air_c;
-        let moist_slope = -per_pa * vapour_slope - 0.0014 * m;
-        (self.sensitivity * (m - moist_w_m2 - dry_w_m2), -self.sensitivity * (moist_slope + dry_slope))
+        let moist_w_m2 = R::splat(self.fixed_loss_w_m2) - vapour_pa * per_pa - air_c * (0.0014 * m);
+        let moist_slope = vapour_slope * -per_pa - 0.0014 * m;
+        ((R::splat(m) - moist_w_m2 - dry_w_m2) * self.sensitivity, (moist_slope + dry_slope) * -self.sensitivity)
     }
 
     /// From which difference between clothing surface and air in K, up or down, natural convection exceeds the forced
@@ -231,12 +261,11 @@ impl PmvModel {
     }
 
     /// Convective loss per clothed area `h_c · d` in W/m², and its slope over the difference `d` in K.
-    fn convection(&self, difference: f64) -> (f64, f64) {
-        let natural = NATURAL_CONVECTION * difference.abs().sqrt().sqrt();
-        if natural > self.forced_convection {
-            (natural * difference, 1.25 * natural)
-        } else {
-            (self.forced_convection * difference, self.forced_convection)
-        }
+    #[inline(always)]
+    fn convection<R: Real>(&self, difference: R) -> (R, R) {
+        let natural = difference.abs().sqrt().sqrt() * NATURAL_CONVECTION;
+        let forced = R::splat(self.forced_convection);
+        let coefficient = natural.above(forced, natural, forced);
+        (coefficient * difference, natural.above(forced, natural * 1.25, forced))
     }
 }

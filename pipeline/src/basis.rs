@@ -37,7 +37,7 @@ impl SimulationBasis<'_> {
     }
 
     /// The key of a simulation of a mission whose own key is given.
-    pub fn key(&self, mission: &str, id: &SimulationId) -> String {
+    fn key(&self, mission: &str, id: &SimulationId) -> String {
         let w = self.study.grid.windows()[id.window];
         let window = format!("{} {}", w.pmv_min(), w.pmv_max());
         keys::hash(&[mission, &self.study.design_rows[id.design].design_key, &window])

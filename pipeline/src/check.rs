@@ -12,9 +12,9 @@ use crate::in_order::in_order;
 use crate::{Inputs, PipelineError, Progress};
 
 /// Measured on two cores of a plain machine; good for an order of magnitude.
-pub(crate) const ROWS_A_SECOND: f64 = 2.8e6;
-pub(crate) const POINTS_A_SECOND: f64 = 3.0e5;
-pub(crate) const SIMULATED_A_SECOND: f64 = 9.0e6;
+pub(crate) const ROWS_A_SECOND: f64 = 5.0e6;
+pub(crate) const POINTS_A_SECOND: f64 = 6.0e4;
+pub(crate) const SIMULATED_A_SECOND: f64 = 8.0e7;
 const BYTES_A_POINT: f64 = 125.0;
 
 /// What a run would work on, and about how long.

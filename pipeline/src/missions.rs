@@ -71,12 +71,12 @@ impl<'v> MissionInTime<'v> {
         optima.iter().zip(&self.segments).map(|(optimum, cabin)| Segment::new(cabin, optimum, window)).collect()
     }
 
-    /// The mission with the given segments.
-    pub fn mission<'m>(&'m self, segments: &'m [Segment]) -> Mission<'m, 'v> {
+    /// The mission as the simulation sees it.
+    pub fn mission(&self) -> Mission<'_, 'v> {
         Mission {
             loads: &self.loads,
             minutes: &self.minutes,
-            segments,
+            segments: self.segments.len(),
             segment_s: self.segment_s,
             door_open_share: self.door_open_share,
         }

@@ -3,19 +3,20 @@
 use cabin::{Operation, PassengerViews};
 use ingest::sample::Sample;
 use rayon::prelude::*;
-use simulate::{Replay, SIMULATION_VERSION};
-use std::collections::BTreeMap;
+use simulate::{LANES, Replay, Segment, Summary, Variant};
 use store::{RecordedStage, SimulationId, SimulationRow, StageRecord, Store};
-use study::{Study, keys};
+use study::Study;
 
 use crate::basis::{SimulationBasis, optima};
 use crate::freshness;
 use crate::missions::{MissionInTime, WeatherAndShade, missions};
-use crate::record::input_hash;
 use crate::{Inputs, PipelineError, Progress, Work, traces};
 
-/// Missions between two transactions, per thread.
-const MISSIONS_A_THREAD: usize = 4;
+/// Missions between two transactions, per thread: two seconds of work.
+const MISSIONS_A_THREAD: usize = 32;
+
+/// What each replay of a point came to, or why there are none.
+type Replays = Result<Vec<(Replay, Summary)>, String>;
 
 /// A mission to be simulated, with all that comes out of the database for it.
 struct Job<'a> {
@@ -58,8 +59,7 @@ pub(crate) fn simulate(
 
     // What the database should hold, and what it holds that it should not.
     let wanted = basis.keys();
-    let mut known = store.simulation_keys(&basis.grid)?;
-    adopt(&basis, store, &wanted, &mut known)?;
+    let known = store.simulation_keys(&basis.grid)?;
     let stale: Vec<SimulationId> =
         known.iter().filter(|(id, key)| wanted.get(*id) != Some(*key)).map(|(id, _)| id.clone()).collect();
     store.forget_simulations(&basis.grid, &stale)?;
@@ -67,22 +67,29 @@ pub(crate) fn simulate(
 
     progress.begin("simulated", basis.missions.len() as u64);
     let mut simulated = 0;
-    for chunk in basis.missions.chunks(MISSIONS_A_THREAD * rayon::current_num_threads()) {
-        if progress.stop() {
-            return Err(PipelineError::Interrupted);
-        }
-        let mut jobs = Vec::new();
-        for samples in chunk {
-            jobs.extend(basis.job(store, samples, &missing)?);
-        }
-        let rows: Vec<Vec<SimulationRow>> = jobs.par_iter().map(|job| basis.run(job, progress)).collect();
-        let rows = rows.concat();
+    let mut chunks = basis.missions.chunks(MISSIONS_A_THREAD * rayon::current_num_threads());
+    let mut read = |store: &mut Store| match chunks.next() {
+        Some(chunk) => basis.jobs(store, chunk, &missing).map(|jobs| Some((chunk.len(), jobs))),
+        None => Ok(None),
+    };
+    let mut write = |store: &mut Store, rows: &[SimulationRow]| {
         simulated += rows.iter().map(|r| r.result.as_ref().map_or(0, Vec::len)).sum::<usize>();
-        if !rows.is_empty() {
-            store.put_simulations(&basis.grid, &rows)?;
+        if rows.is_empty() { Ok(()) } else { store.put_simulations(&basis.grid, rows) }
+    };
+    let (mut next, mut done) = (read(store)?, Vec::new());
+    while let Some((count, jobs)) = next {
+        if progress.stop() {
+            break;
         }
-        progress.advance(chunk.len() as u64);
+        // While some are simulated, those before are written and those after are read.
+        let (rows, beside) = rayon::join(
+            || jobs.par_iter().flat_map_iter(|job| basis.run(job, progress)).collect(),
+            || write(store, &done).map_err(PipelineError::from).and_then(|()| read(store)),
+        );
+        (next, done) = (beside?, rows);
+        progress.advance(count as u64);
     }
+    write(store, &done)?;
     progress.end();
     if progress.stop() {
         return Err(PipelineError::Interrupted);
@@ -109,6 +116,20 @@ fn work(study: &Study, simulated: usize, missions: usize, stale: usize) -> Work 
 }
 
 impl SimulationBasis<'_> {
+    /// What is missing of some missions.
+    fn jobs<'s>(
+        &self,
+        store: &mut Store,
+        missions: &'s [Vec<Sample>],
+        missing: &dyn Fn(&SimulationId) -> Option<String>,
+    ) -> Result<Vec<Job<'s>>, PipelineError> {
+        let mut jobs = Vec::new();
+        for samples in missions {
+            jobs.extend(self.job(store, samples, missing)?);
+        }
+        Ok(jobs)
+    }
+
     /// What is missing of a mission; `None` where nothing is.
     fn job<'s>(
         &self,
@@ -136,60 +157,49 @@ impl SimulationBasis<'_> {
         let first = &job.samples[0];
         let ambient_k =
             job.samples.iter().map(|s| s.disturbances.ambient_temperature_k).sum::<f64>() / job.samples.len() as f64;
-        let row = |point: &Point| {
+        let row = |(point, result): (&Point, _)| SimulationRow {
+            id: point.id.clone(),
+            key: point.key.clone(),
+            mission: first.segment.mission.clone(),
+            month: first.month,
+            ambient_k,
+            result,
+        };
+        let rows = |points: &[Point]| {
             if progress.stop() {
-                return None;
+                return Vec::new();
             }
-            let result = match (&in_time, &point.optima) {
-                (Err(reason), _) | (_, Err(reason)) => Err(reason.clone()),
-                (Ok(in_time), Ok(optima)) => {
-                    let segments = in_time.segments(optima, self.study.grid.windows()[point.id.window]);
-                    let mission = in_time.mission(&segments);
-                    let design = &self.study.grid.designs()[point.id.design];
-                    let replay = |r: &Replay| Some((*r, r.run(&mission, design, &self.study.dynamics, |_| ())?));
-                    Ok(Replay::ALL.iter().filter_map(replay).collect())
-                }
+            let results = match &in_time {
+                Ok(in_time) => self.replays(in_time, points),
+                Err(reason) => vec![Err(reason.clone()); points.len()],
             };
-            Some(SimulationRow {
-                id: point.id.clone(),
-                key: point.key.clone(),
-                mission: first.segment.mission.clone(),
-                month: first.month,
-                ambient_k,
-                result,
-            })
+            points.iter().zip(results).map(row).collect()
         };
         // A night has one mission, whose points then share the cores.
-        job.points.par_iter().map(row).collect::<Vec<_>>().into_iter().flatten().collect()
+        job.points.par_chunks(LANES / Replay::ALL.len()).flat_map_iter(rows).collect()
     }
-}
 
-/// Databases of version 0.1.0 keyed a simulation by its samples' values and by all inputs together. Where that says that nothing
-/// has changed, the simulation gets its new key instead of being computed again.
-fn adopt(
-    basis: &SimulationBasis<'_>,
-    store: &mut Store,
-    wanted: &BTreeMap<SimulationId, String>,
-    known: &mut BTreeMap<SimulationId, String>,
-) -> Result<(), PipelineError> {
-    if known.iter().all(|(id, key)| wanted.get(id) == Some(key)) {
-        return Ok(());
-    }
-    let study = basis.study;
-    let inputs = input_hash(store)?;
-    let dynamics = format!("{:?} {} {SIMULATION_VERSION}", study.dynamics, study.missions.door_open_share);
-    let mut same = Vec::new();
-    for samples in &basis.missions {
-        let values: Vec<String> = samples.iter().map(|s| format!("{} {:?}", s.id, s.disturbances)).collect();
-        let mission = keys::hash(&[&values.join(";"), &inputs, &dynamics]);
-        for id in basis.ids(samples) {
-            if known.get(&id) == Some(&basis.key(&mission, &id))
-                && let Some(key) = wanted.get(&id)
-            {
-                known.insert(id.clone(), key.clone());
-                same.push((id, key.clone()));
-            }
+    /// Some points of a mission in all replays, abreast.
+    fn replays(&self, in_time: &MissionInTime<'_>, points: &[Point]) -> Vec<Replays> {
+        let study = self.study;
+        let segments = |point: &Point| {
+            let optima = point.optima.as_ref().map_err(String::clone)?;
+            Ok(in_time.segments(optima, study.grid.windows()[point.id.window]))
+        };
+        let segments: Vec<Result<Vec<Segment>, String>> = points.iter().map(segments).collect();
+        let mut variants: Vec<Variant<'_>> = Vec::new();
+        for (point, segments) in points.iter().zip(&segments) {
+            let design = &study.grid.designs()[point.id.design];
+            variants.extend(segments.iter().flat_map(|segments| Replay::ALL.map(|replay| replay.of(design, segments))));
         }
+        let Some(summaries) = simulate::simulate(&in_time.mission(), &study.dynamics, &variants) else {
+            return vec![Err("no weather up to its end".to_owned()); points.len()];
+        };
+        let mut of_points = summaries.chunks(Replay::ALL.len());
+        let mut replays = |segments: &Result<Vec<Segment>, String>| match segments {
+            Ok(_) => Ok(Replay::ALL.into_iter().zip(of_points.next().unwrap_or_default().iter().copied()).collect()),
+            Err(reason) => Err(reason.clone()),
+        };
+        segments.iter().map(&mut replays).collect()
     }
-    Ok(store.rekey_simulations(&basis.grid, &same)?)
 }

@@ -2,7 +2,7 @@
 //! hottest, with the best equipped design.
 
 use ingest::sample::Sample;
-use simulate::{Replay, Trace};
+use simulate::{Replay, Trace, simulate_with};
 use std::collections::BTreeMap;
 use store::{SimulationId, Store, TraceRow};
 use study::Study;
@@ -59,10 +59,10 @@ fn row(
     };
     let Ok(optima) = optima(store, &basis.grid, samples)?[&(id.design, id.window)].clone() else { return Ok(None) };
     let segments = in_time.segments(&optima, study.grid.windows()[id.window]);
-    let mission = in_time.mission(&segments);
+    let mission = in_time.mission();
     let mut trace = Trace::default();
-    let design = &study.grid.designs()[id.design];
-    if Replay::PAPER.run(&mission, design, &study.dynamics, |now| trace.add(now)).is_none() {
+    let variants = [Replay::PAPER.of(&study.grid.designs()[id.design], &segments)];
+    if simulate_with(&mission, &study.dynamics, &variants, &mut |_, now| trace.add(now)).is_none() {
         return Ok(None);
     }
     Ok(Some(TraceRow {

@@ -1,45 +1,52 @@
-//! Simulated seconds per second on one core: `cargo bench --workspace --bench mission`.
+//! Simulated seconds per second on one core, of a day in 100 variants: `cargo bench -p busclimate-simulate`; and beside it the
+//! reference of the tests with a step a second, one variant at a time.
 
-use cabin::{Cabin, Disturbances, Heating, LoadChange, PassengerViews, Vehicle, kelvin};
+use cabin::{PassengerViews, Vehicle};
 use divan::{Bencher, counter::ItemsCount};
-use simulate::{Dynamics, Mission, Replay, Segment};
-use testing::{design, optimum};
+use simulate::{Dynamics, Mission, Variant, simulate};
+use testing::{TestMission, paper_designs, simulate_finely};
 
 const HOURS: usize = 10;
+/// Hours of the year with which a winter's and a summer's day begin.
+const WINTER: usize = 30;
+const SUMMER: usize = 3700;
 
 fn main() {
     divan::main();
 }
 
-#[divan::bench]
-fn winter_day(bencher: Bencher) {
+/// Calls `work` with a day of the year in its variants: five designs, five windows, four ways to drive.
+fn with_day(first: usize, work: impl FnOnce(&Mission<'_, '_>, &[Variant<'_>])) {
     let vehicle = Vehicle::default();
     let views = PassengerViews::new(&vehicle);
-    let design = design("hp+curtain", Heating::HeatPump, false, true);
-    let sample = Disturbances {
-        ambient_temperature_k: kelvin(1.0),
-        dni_w_m2: 0.0,
-        dhi_w_m2: 40.0,
-        solar_altitude_rad: 0.2,
-        shadow_fraction: 0.8,
-        passengers: 20.0,
-        door_open_fraction: 0.15,
-    };
-    let optimum = optimum(&vehicle, &views, &design, &sample, 1.0);
-    let band_k = [optimum.temperatures.cabin_k, optimum.temperatures.cabin_k + 6.0];
-    let segments = [Segment { optimum, band_k }; HOURS];
-    let minutes = vec![Cabin::new(&vehicle, &views, &sample); 60 * HOURS];
-    // A stop of 20 s every 80 s.
-    let stop = |i: u32| LoadChange {
-        second: 80 * (i / 2) + 20 * (i % 2),
-        passengers: f64::from(i % 41),
-        door_open: f64::from(i.is_multiple_of(2)),
-    };
-    let loads: Vec<LoadChange> = (0..3600 * HOURS as u32 / 40).map(stop).collect();
-    let mission =
-        Mission { loads: &loads, minutes: &minutes, segments: &segments, segment_s: 3600, door_open_share: 0.6 };
-    let dynamics = Dynamics::default();
-    bencher
-        .counter(ItemsCount::new(3600 * HOURS))
-        .bench_local(|| Replay::PAPER.run(divan::black_box(&mission), &design, &dynamics, |_| ()));
+    let designs = paper_designs();
+    let mission = TestMission::new(&vehicle, &views, &designs, first, HOURS);
+    work(&mission.mission(), &mission.variants(&designs));
+}
+
+fn all(bencher: Bencher, first: usize) {
+    with_day(first, |mission, variants| {
+        bencher
+            .counter(ItemsCount::new(3600 * HOURS * variants.len()))
+            .bench_local(|| simulate(divan::black_box(mission), &Dynamics::default(), variants));
+    });
+}
+
+#[divan::bench(sample_count = 10)]
+fn winter_in_100_variants(bencher: Bencher) {
+    all(bencher, WINTER);
+}
+
+#[divan::bench(sample_count = 10)]
+fn summer_in_100_variants(bencher: Bencher) {
+    all(bencher, SUMMER);
+}
+
+#[divan::bench(sample_count = 3)]
+fn winter_one_by_one_with_settled_votes(bencher: Bencher) {
+    with_day(WINTER, |mission, variants| {
+        bencher
+            .counter(ItemsCount::new(3600 * HOURS))
+            .bench_local(|| simulate_finely(divan::black_box(mission), &Dynamics::default(), &variants[0], 1, |_| ()));
+    });
 }

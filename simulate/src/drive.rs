@@ -1,80 +1,307 @@
-//! The loop: a mission, second by second, under any controller.
+//! The loop: a mission, second by second, in eight variants abreast.
+//!
+//! They share weather, sun, doors and passengers; states, setpoints, limits and devices are numbers of the lanes. No lane sees
+//! another, so that a variant comes out the same to the bit in whatever company.
 
-use cabin::{Design, Temperatures};
+use cabin::{Cabin, Heating, OperatingMode, Temperatures};
+use pulp::{Arch, Simd, WithSimd};
 
-use crate::control::{Controller, Measurements};
+use crate::average::{FIRST_S, TrailingVotes, VOTE_S, Votes};
+use crate::control::{Demand, Loops};
+use crate::lanes::{LANES, Lanes};
+use crate::model::{AirUnits, Rates, Second, Vector, temperatures};
 use crate::summary::Sums;
-use crate::{BusState, Dynamics, Instant, Mission, Start, Summary, depot_temperature_k, step};
+use crate::{BusState, Commands, Dynamics, Instant, Mission, Start, Summary, Variant, depot_temperature_k};
 
-/// Simulates a mission over all its segments; `record` sees every second.
+/// Whoever sees every second of every variant, by its place.
+pub type Record<'r> = dyn FnMut(usize, &Instant) + 'r;
+
+/// Simulates a mission in all its variants, over all its segments; what comes of each, in their order.
 ///
 /// `None` where there is no segment, or the minutes do not reach to the end of the last one.
-pub fn simulate(
-    mission: &Mission<'_, '_>,
-    design: &Design,
-    dynamics: &Dynamics,
-    start: Start,
-    controller: &mut impl Controller,
-    mut record: impl FnMut(&Instant),
-) -> Option<Summary> {
-    let end_s = mission.segments.len() as u32 * mission.segment_s;
-    if mission.minutes.len() < (end_s as usize).div_ceil(60) {
-        return None;
-    }
-    let mut state = first_state(mission, start)?;
-    let mut clothes = mission.minutes.first()?.clothes(&state.temperatures);
-    let mut sums = Sums::new();
-    let mut loads = mission.loads.iter().peekable();
-    let (mut passengers, mut door_open_fraction) = (0.0, 0.0);
-    for (i, segment) in mission.segments.iter().enumerate() {
-        let from_s = i as u32 * mission.segment_s;
-        for second in from_s..from_s + mission.segment_s {
-            while let Some(load) = loads.next_if(|l| l.second <= second) {
-                passengers = load.passengers;
-                door_open_fraction = load.door_open * mission.door_open_share;
-            }
-            let cabin = mission.minutes[second as usize / 60].with_load(passengers, door_open_fraction);
-            let t = &state.temperatures;
-            let demand = controller.command(&Measurements {
-                second,
-                ambient_k: cabin.ambient_k(),
-                cabin_k: t.cabin_k,
-                radiant_heater_k: t.radiant_heater_k,
-            });
-            let commands = demand.commands;
-            state = step(&cabin, design, dynamics, &state, &commands, 1.0);
-            let pmv = cabin.step_vote(&state.temperatures, &mut clothes);
-            let instant = Instant {
-                second,
-                state,
-                commands,
-                air_curtain_power_w: if commands.air_curtain_on { cabin.air_curtain_power_w() } else { 0.0 },
-                passengers,
-                door_open_fraction,
-                pmv,
-                pmv_15min: sums.average.push(pmv),
-            };
-            sums.add(&instant, segment, demand.held_back);
-            record(&instant);
-        }
-    }
-    Some(sums.summary(mission, state))
+pub fn simulate(mission: &Mission<'_, '_>, dynamics: &Dynamics, variants: &[Variant<'_>]) -> Option<Vec<Summary>> {
+    abreast(mission, dynamics, variants, None)
 }
 
-fn first_state(mission: &Mission<'_, '_>, start: Start) -> Option<BusState> {
-    let optimum = &mission.segments.first()?.optimum;
-    Some(match start {
-        Start::Depot => {
-            let depot_k = depot_temperature_k(mission.minutes.first()?.ambient_k());
-            let temperatures = Temperatures {
-                cabin_k: depot_k,
-                interior_k: depot_k,
-                shell_inside_k: depot_k,
-                shell_outside_k: depot_k,
-                radiant_heater_k: depot_k,
+/// As [`simulate`](fn@simulate); `record` sees every second of every variant, by its place, in the order of time.
+pub fn simulate_with(
+    mission: &Mission<'_, '_>,
+    dynamics: &Dynamics,
+    variants: &[Variant<'_>],
+    record: &mut Record<'_>,
+) -> Option<Vec<Summary>> {
+    abreast(mission, dynamics, variants, Some(record))
+}
+
+fn abreast(
+    mission: &Mission<'_, '_>,
+    dynamics: &Dynamics,
+    variants: &[Variant<'_>],
+    mut record: Option<&mut Record<'_>>,
+) -> Option<Vec<Summary>> {
+    let seconds = mission.segments * mission.segment_s as usize;
+    let reaches = |variant: &Variant<'_>| variant.segments.len() == mission.segments;
+    if seconds == 0 || mission.minutes.len() < seconds.div_ceil(60) || !variants.iter().all(reaches) {
+        return None;
+    }
+    let mut summaries = Vec::with_capacity(variants.len());
+    for (n, some) in variants.chunks(LANES).enumerate() {
+        // Lanes that are left over drive the last variant once more.
+        let lanes = std::array::from_fn(|lane| some[lane.min(some.len() - 1)]);
+        let mut of_lane = record.as_mut().map(|record| {
+            move |lane: usize, now: &Instant| {
+                if lane < some.len() {
+                    record(n * LANES + lane, now);
+                }
+            }
+        });
+        let of_lane = of_lane.as_mut().map(|record| record as &mut Record<'_>);
+        let all = Arch::new().dispatch(Run { drive: Drive::new(mission, dynamics, lanes), record: of_lane });
+        summaries.extend_from_slice(&all[..some.len()]);
+    }
+    Some(summaries)
+}
+
+/// A drive that is compiled once for each set of vector instructions, and runs with what the machine has. All of them round
+/// alike: none contracts a product and a sum into one operation.
+struct Run<'a, 'm, 'v, 'r> {
+    drive: Drive<'a, 'm, 'v>,
+    record: Option<&'r mut Record<'r>>,
+}
+
+impl WithSimd for Run<'_, '_, '_, '_> {
+    type Output = [Summary; LANES];
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Self::Output {
+        self.drive.run(self.record)
+    }
+}
+
+/// Eight variants on their way.
+struct Drive<'a, 'm, 'v> {
+    mission: &'a Mission<'m, 'v>,
+    rates: Rates,
+    variants: [Variant<'a>; LANES],
+    x: Vector,
+    loops: Loops,
+    air_units: AirUnits<'a>,
+    sums: Sums,
+    door_loss_share: Lanes,
+}
+
+/// What a second of all lanes looks like, for whoever records it.
+#[derive(Clone, Copy)]
+struct Past {
+    x: Vector,
+    demand: Demand,
+    air_curtain_power_w: Lanes,
+    curtain: Lanes,
+    passengers: f64,
+    door_open_fraction: f64,
+}
+
+impl<'a, 'm, 'v> Drive<'a, 'm, 'v> {
+    fn new(mission: &'a Mission<'m, 'v>, dynamics: &Dynamics, variants: [Variant<'a>; LANES]) -> Self {
+        let limits = variants.map(|v| v.scenario.limits.of(v.design, dynamics));
+        let mut loops = Loops::new(dynamics, limits);
+        let mut x = [Lanes::ZERO; 6];
+        for (lane, variant) in variants.iter().enumerate() {
+            let optimum = &variant.segments[0].optimum;
+            let state = match variant.scenario.start {
+                Start::Depot => in_depot(&mission.minutes[0]),
+                Start::SteadyState => {
+                    loops.settle(lane, optimum);
+                    let at_once = optimum.mode == OperatingMode::Heating && variant.design.heating == Heating::Ptc;
+                    let machine_heat_w = if at_once { 0.0 } else { optimum.air_unit_heat_w };
+                    BusState { temperatures: optimum.temperatures, machine_heat_w }
+                }
             };
-            BusState { temperatures, air_unit_heat_w: 0.0 }
+            state.put(&mut x, lane);
         }
-        Start::SteadyState => BusState { temperatures: optimum.temperatures, air_unit_heat_w: optimum.air_unit_heat_w },
-    })
+        let air_units = AirUnits::new(variants.map(|v| v.design), *loops.modes());
+        let rates = Rates::new(dynamics);
+        Self { mission, rates, variants, x, loops, air_units, sums: Sums::new(), door_loss_share: Lanes::ONE }
+    }
+
+    #[inline(always)]
+    fn run<'r>(mut self, mut record: Option<&'r mut Record<'r>>) -> [Summary; LANES] {
+        let mission = self.mission;
+        let mut clothes = mission.minutes[0].clothes(&temperatures(&self.x));
+        let first = mission.minutes[0].step_vote(&temperatures(&self.x), &mut clothes);
+        let mut trailing = TrailingVotes::new(first);
+        let mut loads = mission.loads.iter().peekable();
+        let (mut passengers, mut door_open_fraction) = (0.0, 0.0);
+        let seconds = mission.segments as u32 * mission.segment_s;
+        let mut cabin = mission.minutes[0];
+        for from_s in (0..seconds).step_by(VOTE_S) {
+            if from_s % mission.segment_s == 0 {
+                self.begin_segment((from_s / mission.segment_s) as usize, &cabin);
+            }
+            if from_s % 60 == 0 {
+                cabin = mission.minutes[from_s as usize / 60].with_load(passengers, door_open_fraction);
+            }
+            let length = VOTE_S.min((seconds - from_s) as usize);
+            let mut on_board = [false; VOTE_S];
+            let mut past = [None; VOTE_S];
+            let mut votes = [Lanes::ZERO; VOTE_S];
+            for (j, (on_board, past)) in on_board.iter_mut().zip(&mut past).enumerate().take(length) {
+                while let Some(load) = loads.next_if(|l| l.second <= from_s + j as u32) {
+                    passengers = load.passengers;
+                    door_open_fraction = load.door_open * mission.door_open_share;
+                    cabin = cabin.with_load(passengers, door_open_fraction);
+                }
+                *on_board = passengers >= 1.0;
+                let demand = self.second(&cabin);
+                if from_s < FIRST_S {
+                    votes[j] = cabin.step_vote(&temperatures(&self.x), &mut clothes);
+                }
+                if record.is_some() {
+                    let (x, curtain) = (self.x, self.loops.curtain);
+                    let air_curtain_power_w = curtain * cabin.air_curtain_power_w();
+                    *past = Some(Past { x, demand, air_curtain_power_w, curtain, passengers, door_open_fraction });
+                }
+            }
+            if from_s >= FIRST_S {
+                let vote = cabin.step_vote(&temperatures(&self.x), &mut clothes);
+                votes = trailing.up_to(vote, length);
+            }
+            let means = trailing.push(&votes, &on_board[..length]);
+            if let Some(record) = &mut record {
+                tell(from_s, &past, [&votes, &means], record);
+            }
+        }
+        std::array::from_fn(|lane| {
+            let end = BusState::of(&self.x, lane);
+            self.sums.summary(lane, seconds, self.variants[lane].segments, trailing.largest(lane), end)
+        })
+    }
+
+    /// A segment begins for all lanes.
+    fn begin_segment(&mut self, number: usize, cabin: &Cabin<'_>) {
+        for lane in 0..LANES {
+            let variant = &self.variants[lane];
+            let segment = &variant.segments[number];
+            let setting = variant.law.setting(segment);
+            self.loops.begin(lane, setting, self.x[2]);
+            self.sums.begin(lane, segment);
+            self.door_loss_share.0[lane] = cabin.door_loss_share(setting.air_curtain);
+        }
+        self.air_units.follow(self.loops.modes());
+    }
+
+    /// A second passes.
+    #[inline(always)]
+    fn second(&mut self, cabin: &Cabin<'_>) -> Demand {
+        if self.loops.want_another_mode(self.x[2]) {
+            self.loops.choose_modes(self.x[2]);
+            self.air_units.follow(self.loops.modes());
+        }
+        let demand = self.loops.command(self.x[2], self.x[0]);
+        let second = Second {
+            cabin,
+            air_units: &self.air_units,
+            air_unit_power_w: demand.air_unit_power_w,
+            radiant_heater_power_w: demand.radiant_heater_power_w,
+            door_loss_share: self.door_loss_share,
+        };
+        self.x = second.step(&self.rates, &self.x);
+        self.sums.add(&demand, self.loops.curtain * cabin.air_curtain_power_w(), self.x[2]);
+        demand
+    }
+}
+
+/// Everything at depot temperature, the machine at rest.
+fn in_depot(minute: &Cabin<'_>) -> BusState {
+    let depot_k = depot_temperature_k(minute.ambient_k());
+    let temperatures = Temperatures {
+        cabin_k: depot_k,
+        interior_k: depot_k,
+        shell_inside_k: depot_k,
+        shell_outside_k: depot_k,
+        radiant_heater_k: depot_k,
+    };
+    BusState { temperatures, machine_heat_w: 0.0 }
+}
+
+fn tell(from_s: u32, past: &[Option<Past>; VOTE_S], [votes, means]: [&Votes; 2], record: &mut Record<'_>) {
+    for (j, past) in past.iter().enumerate() {
+        let Some(past) = past else { continue };
+        for lane in 0..LANES {
+            let commands = Commands {
+                air_unit_power_w: past.demand.air_unit_power_w.0[lane],
+                radiant_heater_power_w: past.demand.radiant_heater_power_w.0[lane],
+                air_curtain_on: past.curtain.0[lane] != 0.0,
+            };
+            let now = Instant {
+                second: from_s + j as u32,
+                state: BusState::of(&past.x, lane),
+                commands,
+                air_curtain_power_w: past.air_curtain_power_w.0[lane],
+                passengers: past.passengers,
+                door_open_fraction: past.door_open_fraction,
+                pmv: votes[j].0[lane],
+                pmv_15min: means[j].0[lane],
+            };
+            record(lane, &now);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Replay, Segment};
+    use cabin::{
+        Cop, Design, Devices, Disturbances, LoadChange, Operation, PassengerViews, StandardRange, Vehicle, kelvin,
+    };
+
+    /// What is stored does not depend on the machine: with all vector instructions that it has, and with none.
+    #[test]
+    fn prop_all_instructions_round_alike() {
+        let vehicle = Vehicle::default();
+        let views = PassengerViews::new(&vehicle);
+        let d = Disturbances {
+            ambient_temperature_k: kelvin(-3.0),
+            dni_w_m2: 120.0,
+            dhi_w_m2: 60.0,
+            solar_altitude_rad: 0.4,
+            shadow_fraction: 0.3,
+            passengers: 0.0,
+            door_open_fraction: 0.0,
+        };
+        let minutes = [Cabin::new(&vehicle, &views, &d); 60];
+        let design = |heating, heating_cop| Design {
+            name: String::new(),
+            heating,
+            heating_cop,
+            cooling_cop: Cop::Linear { at_zero: 3.0, slope_per_k: 0.09, min: 1.0, max: 4.0 },
+            devices: Devices { radiant_heaters: true, air_curtain: true },
+        };
+        let hyperbola = Cop::Hyperbola { numerator_k: 74.0, offset_k: 17.0, min: 1.0, max: 4.5 };
+        let designs = [design(Heating::HeatPump, hyperbola), design(Heating::Ptc, Cop::Constant(1.0))];
+        let temperatures = minutes[0].rough_state(kelvin(18.0)).temperatures;
+        let optimum = Operation {
+            mode: OperatingMode::Heating,
+            devices: designs[0].devices,
+            air_unit_power_w: 3000.0,
+            radiant_heater_power_w: 800.0,
+            air_curtain_power_w: 100.0,
+            air_unit_heat_w: 7500.0,
+            temperatures,
+            mean_radiant_temperature_k: kelvin(16.0),
+            pmv: -0.5,
+            standard_range: StandardRange::Inside,
+        };
+        let segments = [Segment { optimum, band_k: [kelvin(18.0), kelvin(19.0)] }];
+        let stop = |i: u32| LoadChange { second: 40 * i, passengers: f64::from(i % 23), door_open: f64::from(i % 2) };
+        let loads: Vec<LoadChange> = (0..90).map(stop).collect();
+        let mission = Mission { loads: &loads, minutes: &minutes, segments: 1, segment_s: 3600, door_open_share: 0.6 };
+        let variants = std::array::from_fn(|lane| Replay::ALL[lane % 4].of(&designs[lane / 4], &segments));
+        let drive = || Drive::new(&mission, &Dynamics::default(), variants);
+        let with_all = Arch::new().dispatch(Run { drive: drive(), record: None });
+        let with_none = Run { drive: drive(), record: None }.with_simd(pulp::Scalar);
+        assert_eq!(with_all, with_none);
+        assert_ne!(with_all[0], with_all[4]);
+    }
 }

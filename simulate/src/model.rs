@@ -1,19 +1,20 @@
-//! The dynamic model over one second.
+//! The dynamic model over one second, of all lanes.
 
-use cabin::{Cabin, Design, Temperatures};
+use cabin::{Cabin, Cop, Design, Heating, OperatingMode, Temperatures};
 
 use crate::Dynamics;
+use crate::lanes::{LANES, Lanes};
 
 /// The states of the model.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BusState {
     /// Temperatures of the five reservoirs.
     pub temperatures: Temperatures,
-    /// Heat that the air unit gives in W, negative when it cools.
-    pub air_unit_heat_w: f64,
+    /// Heat that the air unit's machine gives in W, negative when it cools: what lags behind its power.
+    pub machine_heat_w: f64,
 }
 
-/// What the controllers ask for, held over the step.
+/// What the controllers ask for, held over a second.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Commands {
     /// Electric power of the air unit in W; negative where it cools.
@@ -31,16 +32,25 @@ pub fn depot_temperature_k(ambient_k: f64) -> f64 {
     (ambient_k - MILD_K) * 0.5 + MILD_K
 }
 
-/// Heaters, interior, cabin, inside and outside of the shell in K, heat of the air unit in W; or their slopes.
-type Vector = [f64; 6];
+/// Heaters, interior, cabin, inside and outside of the shell in K, heat of the machine in W; or their slopes.
+pub(crate) type Vector = [Lanes; 6];
+
+/// The temperatures of a vector.
+#[inline(always)]
+pub(crate) fn temperatures(&[heater, interior, cabin, inside, outside, _]: &Vector) -> Temperatures<Lanes> {
+    Temperatures {
+        cabin_k: cabin,
+        interior_k: interior,
+        shell_inside_k: inside,
+        shell_outside_k: outside,
+        radiant_heater_k: heater,
+    }
+}
 
 impl BusState {
-    fn vector(&self) -> Vector {
-        let t = &self.temperatures;
-        [t.radiant_heater_k, t.interior_k, t.cabin_k, t.shell_inside_k, t.shell_outside_k, self.air_unit_heat_w]
-    }
-
-    fn from_vector([heater, interior, cabin, inside, outside, air_unit_heat_w]: Vector) -> Self {
+    /// The states of a lane.
+    pub(crate) fn of(x: &Vector, lane: usize) -> Self {
+        let [heater, interior, cabin, inside, outside, machine_heat_w] = x.map(|x| x.0[lane]);
         let temperatures = Temperatures {
             cabin_k: cabin,
             interior_k: interior,
@@ -48,46 +58,186 @@ impl BusState {
             shell_outside_k: outside,
             radiant_heater_k: heater,
         };
-        Self { temperatures, air_unit_heat_w }
+        Self { temperatures, machine_heat_w }
+    }
+
+    pub(crate) fn put(&self, x: &mut Vector, lane: usize) {
+        let t = &self.temperatures;
+        let all =
+            [t.radiant_heater_k, t.interior_k, t.cabin_k, t.shell_inside_k, t.shell_outside_k, self.machine_heat_w];
+        for (x, value) in x.iter_mut().zip(all) {
+            x.0[lane] = value;
+        }
     }
 }
 
-/// The state after `seconds`, with loads, weather and commands held: the classical Runge-Kutta method of fourth order. Over
-/// one second, the step of the telemetry, its error is far below a millikelvin.
-#[must_use]
-#[inline]
-pub fn step(
-    cabin: &Cabin<'_>,
-    design: &Design,
-    dynamics: &Dynamics,
-    state: &BusState,
-    commands: &Commands,
-    seconds: f64,
-) -> BusState {
-    let slope = |x: &Vector| derivative(cabin, design, dynamics, x, commands);
-    let x = state.vector();
-    let along = |k: &Vector, h: f64| std::array::from_fn(|i| x[i] + h * k[i]);
-    let k1 = slope(&x);
-    let k2 = slope(&along(&k1, 0.5 * seconds));
-    let k3 = slope(&along(&k2, 0.5 * seconds));
-    let k4 = slope(&along(&k3, seconds));
-    BusState::from_vector(std::array::from_fn(|i| x[i] + seconds / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i])))
+/// The air units in their present modes. A resistive heater gives its heat at once; a heat pump and the air conditioning lag
+/// (paper, eq. `vcc-ode`).
+#[derive(Debug, Clone)]
+pub(crate) struct AirUnits<'d> {
+    designs: [&'d Design; LANES],
+    modes: [OperatingMode; LANES],
+    /// Whether any curve has no formula of its own here.
+    any_other: bool,
+    others: [Option<&'d Cop>; LANES],
+    /// 1 where the lift is that of heating, −1 where it is that of cooling.
+    warms: Lanes,
+    /// COP = clamp(constant − slope · lift + numerator / (max(lift, 0) + offset)).
+    constant: Lanes,
+    slope_per_k: Lanes,
+    numerator_k: Lanes,
+    offset_k: Lanes,
+    least: Lanes,
+    largest: Lanes,
+    /// 1 where heat comes at once, 0 where it lags.
+    at_once: Lanes,
 }
 
-#[inline]
-fn derivative(cabin: &Cabin<'_>, design: &Design, d: &Dynamics, x: &Vector, c: &Commands) -> Vector {
-    let BusState { temperatures: t, air_unit_heat_w } = BusState::from_vector(*x);
-    // Eq. `odes`.
-    let net_w = cabin.flows(&t, c.air_curtain_on, air_unit_heat_w, c.radiant_heater_power_w).net_w();
-    // Eq. `steady-state-hc` and its first-order lag, eq. `vcc-ode`.
-    let lift_k = t.cabin_k - cabin.ambient_k();
-    let cop = if c.air_unit_power_w >= 0.0 { design.heating_cop.at(lift_k) } else { design.cooling_cop.at(-lift_k) };
-    [
-        net_w[0] / d.radiant_heater_capacity_j_k,
-        net_w[1] / d.interior_capacity_j_k,
-        net_w[2] / d.cabin_capacity_j_k,
-        net_w[3] / d.shell_inside_capacity_j_k,
-        net_w[4] / d.shell_outside_capacity_j_k,
-        (cop * c.air_unit_power_w - air_unit_heat_w) / d.air_unit_time_constant_s,
-    ]
+impl<'d> AirUnits<'d> {
+    pub fn new(designs: [&'d Design; LANES], modes: [OperatingMode; LANES]) -> Self {
+        let mut units = Self {
+            designs,
+            modes,
+            any_other: false,
+            others: [None; LANES],
+            warms: Lanes::ONE,
+            constant: Lanes::ZERO,
+            slope_per_k: Lanes::ZERO,
+            numerator_k: Lanes::ZERO,
+            offset_k: Lanes::ONE,
+            least: Lanes::ZERO,
+            largest: Lanes::ZERO,
+            at_once: Lanes::ZERO,
+        };
+        units.refresh();
+        units
+    }
+
+    /// Follows the modes.
+    pub fn follow(&mut self, modes: &[OperatingMode; LANES]) {
+        if self.modes != *modes {
+            self.modes = *modes;
+            self.refresh();
+        }
+    }
+
+    fn refresh(&mut self) {
+        for lane in 0..LANES {
+            let design = self.designs[lane];
+            let cools = self.modes[lane] == OperatingMode::Cooling;
+            let cop = if cools { &design.cooling_cop } else { &design.heating_cop };
+            let unbounded = [f64::NEG_INFINITY, f64::INFINITY];
+            let (formula, [least, largest]) = match cop {
+                Cop::Constant(cop) => (Some([*cop, 0.0, 0.0, 1.0]), unbounded),
+                Cop::Linear { at_zero, slope_per_k, min, max } => {
+                    (Some([*at_zero, *slope_per_k, 0.0, 1.0]), [*min, *max])
+                }
+                Cop::Hyperbola { numerator_k, offset_k, min, max } => {
+                    (Some([0.0, 0.0, *numerator_k, *offset_k]), [*min, *max])
+                }
+                Cop::Exponential { .. } | Cop::Table(_) => (None, unbounded),
+            };
+            let [constant, slope_per_k, numerator_k, offset_k] = formula.unwrap_or([0.0, 0.0, 0.0, 1.0]);
+            self.others[lane] = if formula.is_none() { Some(cop) } else { None };
+            self.warms.0[lane] = if cools { -1.0 } else { 1.0 };
+            self.constant.0[lane] = constant;
+            self.slope_per_k.0[lane] = slope_per_k;
+            self.numerator_k.0[lane] = numerator_k;
+            self.offset_k.0[lane] = offset_k;
+            self.least.0[lane] = least;
+            self.largest.0[lane] = largest;
+            let at_once = !cools && design.heating == Heating::Ptc;
+            self.at_once.0[lane] = f64::from(u8::from(at_once));
+        }
+        self.any_other = self.others.iter().any(Option::is_some);
+    }
+
+    /// COP over cabin temperature less ambient temperature in K.
+    #[inline(always)]
+    fn cop(&self, above_ambient_k: Lanes) -> Lanes {
+        let lift_k = self.warms * above_ambient_k;
+        let hyperbola = self.numerator_k / (lift_k.max(Lanes::ZERO) + self.offset_k);
+        let mut cop = (self.constant - self.slope_per_k * lift_k + hyperbola).max(self.least).min(self.largest);
+        if self.any_other {
+            for (lane, other) in self.others.iter().enumerate() {
+                if let Some(curve) = other {
+                    cop.0[lane] = curve.at(lift_k.0[lane]);
+                }
+            }
+        }
+        cop
+    }
+}
+
+/// One over the heat capacities and the time constant, in the order of a [`Vector`].
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Rates([f64; 6]);
+
+impl Rates {
+    pub fn new(d: &Dynamics) -> Self {
+        Self(
+            [
+                d.radiant_heater_capacity_j_k,
+                d.interior_capacity_j_k,
+                d.cabin_capacity_j_k,
+                d.shell_inside_capacity_j_k,
+                d.shell_outside_capacity_j_k,
+                d.air_unit_time_constant_s,
+            ]
+            .map(f64::recip),
+        )
+    }
+}
+
+/// What acts on the states during a second.
+pub(crate) struct Second<'s> {
+    pub cabin: &'s Cabin<'s>,
+    pub air_units: &'s AirUnits<'s>,
+    pub air_unit_power_w: Lanes,
+    pub radiant_heater_power_w: Lanes,
+    /// [`Cabin::door_loss_share`] of each lane.
+    pub door_loss_share: Lanes,
+}
+
+impl Second<'_> {
+    /// The states a second later: the classical Runge-Kutta method of fourth order.
+    #[inline(always)]
+    pub fn step(&self, rates: &Rates, x: &Vector) -> Vector {
+        let k1 = self.slopes(rates, x);
+        let k2 = self.slopes(rates, &along(x, &k1, 0.5));
+        let k3 = self.slopes(rates, &along(x, &k2, 0.5));
+        let k4 = self.slopes(rates, &along(x, &k3, 1.0));
+        let mut out = *x;
+        for i in 0..out.len() {
+            out[i] = out[i] + (k1[i] + (k2[i] + k3[i]) * 2.0 + k4[i]) * (1.0 / 6.0);
+        }
+        out
+    }
+
+    /// Eq. `odes` with eq. `steady-state-hc`, and its first-order lag, eq. `vcc-ode`.
+    #[inline(always)]
+    fn slopes(&self, Rates(rates): &Rates, x: &Vector) -> Vector {
+        let t = temperatures(x);
+        let machine_w = x[5];
+        let given_w = self.air_units.cop(t.cabin_k - self.cabin.ambient_k()) * self.air_unit_power_w;
+        let at_once_w = given_w * self.air_units.at_once;
+        let flows =
+            self.cabin.flows_abreast(&t, self.door_loss_share, machine_w + at_once_w, self.radiant_heater_power_w);
+        let [heater, interior, cabin, inside, outside] = flows.net_w();
+        let net = [heater, interior, cabin, inside, outside, given_w - at_once_w - machine_w];
+        let mut slopes = net;
+        for (slope, rate) in slopes.iter_mut().zip(rates) {
+            *slope = *slope * *rate;
+        }
+        slopes
+    }
+}
+
+#[inline(always)]
+fn along(x: &Vector, slopes: &Vector, seconds: f64) -> Vector {
+    let mut out = *x;
+    for (x, slope) in out.iter_mut().zip(slopes) {
+        *x = *x + *slope * seconds;
+    }
+    out
 }

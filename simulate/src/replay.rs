@@ -3,8 +3,8 @@
 
 use cabin::Design;
 
-use crate::control::{ComfortBand, HourlyMode, Loops};
-use crate::{Dynamics, Instant, Limits, Mission, Scenario, Start, Summary, simulate};
+use crate::control::Law;
+use crate::{Limits, Scenario, Segment, Start, Variant};
 
 /// A scenario with a law, and the name that both have together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -15,15 +15,6 @@ pub struct Replay {
     pub scenario: Scenario,
     /// Who decides on the operating mode.
     pub law: Law,
-}
-
-/// The law that follows the optima.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Law {
-    /// [`HourlyMode`].
-    HourlyMode,
-    /// [`ComfortBand`].
-    ComfortBand,
 }
 
 impl Replay {
@@ -51,27 +42,9 @@ impl Replay {
     /// All of them, each one less bound than the one before.
     pub const ALL: [Self; 4] = [Self::PAPER, Self::WARM_START, Self::UNLIMITED, Self::FREE_MODE];
 
-    /// Simulates a mission; `record` sees every second. `None` as of [`simulate`].
-    pub fn run(
-        &self,
-        mission: &Mission<'_, '_>,
-        design: &Design,
-        dynamics: &Dynamics,
-        record: impl FnMut(&Instant),
-    ) -> Option<Summary> {
-        let Scenario { start, .. } = self.scenario;
-        let mut loops = Loops::new(design, dynamics, self.scenario);
-        if start == Start::SteadyState {
-            loops = loops.settled(&mission.segments.first()?.optimum);
-        }
-        let (segments, segment_s) = (mission.segments, mission.segment_s);
-        match self.law {
-            Law::HourlyMode => {
-                simulate(mission, design, dynamics, start, &mut HourlyMode::new(segments, segment_s, loops), record)
-            }
-            Law::ComfortBand => {
-                simulate(mission, design, dynamics, start, &mut ComfortBand::new(segments, segment_s, loops), record)
-            }
-        }
+    /// The variant of a mission in which this replays the optima of a design.
+    #[must_use]
+    pub fn of<'m>(&self, design: &'m Design, segments: &'m [Segment]) -> Variant<'m> {
+        Variant { design, scenario: self.scenario, law: self.law, segments }
     }
 }

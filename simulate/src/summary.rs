@@ -1,9 +1,11 @@
 //! What a simulation comes to, added up second by second.
 
 use cabin::OperatingMode;
+use cabin::Real;
 
-use crate::average::MovingAverage;
-use crate::{BusState, Instant, Mission, Segment};
+use crate::control::Demand;
+use crate::lanes::{LANES, Lanes};
+use crate::{BusState, Segment};
 
 /// What a simulation comes to, beside what the steady-state optima foresee.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,56 +29,67 @@ pub struct Summary {
 }
 
 /// What is added up over a mission.
+#[derive(Debug, Clone)]
 pub(crate) struct Sums {
-    pub average: MovingAverage,
-    seconds: u32,
-    energy_j: f64,
-    saturated_s: u32,
-    max_abs_pmv: Option<f64>,
-    tracked_s: u32,
-    square_error: f64,
+    energy_j: Lanes,
+    saturated_s: Lanes,
+    square_error: Lanes,
+    /// Seconds in which the optimum has the air unit on.
+    tracked_s: Lanes,
+    /// Of the present segment: 1 where it has, and the cabin temperature that it prescribes in K.
+    tracked: Lanes,
+    prescribed_k: Lanes,
 }
 
 impl Sums {
     pub fn new() -> Self {
         Self {
-            average: MovingAverage::new(),
-            seconds: 0,
-            energy_j: 0.0,
-            saturated_s: 0,
-            max_abs_pmv: None,
-            tracked_s: 0,
-            square_error: 0.0,
+            energy_j: Lanes::ZERO,
+            saturated_s: Lanes::ZERO,
+            square_error: Lanes::ZERO,
+            tracked_s: Lanes::ZERO,
+            tracked: Lanes::ZERO,
+            prescribed_k: Lanes::ZERO,
         }
     }
 
-    pub fn add(&mut self, now: &Instant, segment: &Segment, held_back: bool) {
-        self.seconds += 1;
-        self.energy_j += now.hvac_power_w();
-        self.saturated_s += u32::from(held_back);
-        if now.passengers >= 1.0 {
-            let pmv = now.pmv_15min.abs();
-            self.max_abs_pmv = Some(self.max_abs_pmv.map_or(pmv, |m| m.max(pmv)));
-        }
-        if segment.optimum.mode != OperatingMode::Passive {
-            let error_k = now.state.temperatures.cabin_k - segment.optimum.temperatures.cabin_k;
-            self.tracked_s += 1;
-            self.square_error += error_k * error_k;
-        }
+    /// A lane begins a segment.
+    pub fn begin(&mut self, lane: usize, segment: &Segment) {
+        self.tracked.0[lane] = f64::from(u8::from(segment.optimum.mode != OperatingMode::Passive));
+        self.prescribed_k.0[lane] = segment.optimum.temperatures.cabin_k;
     }
 
-    pub fn summary(&self, mission: &Mission<'_, '_>, end: BusState) -> Summary {
-        let count = mission.segments.len() as f64;
-        let share = |part: u32, of: u32| if of > 0 { f64::from(part) / f64::from(of) } else { 0.0 };
-        let tracked = f64::from(self.tracked_s.max(1));
+    /// Adds a second: its demand, the power of the air curtains in W, and the cabin at its end.
+    #[inline(always)]
+    pub fn add(&mut self, demand: &Demand, air_curtain_power_w: Lanes, cabin: Lanes) {
+        let power_w = demand.air_unit_power_w.abs() + demand.radiant_heater_power_w + air_curtain_power_w;
+        self.energy_j = self.energy_j + power_w;
+        self.saturated_s = self.saturated_s + demand.held_back;
+        let error_k = cabin - self.prescribed_k;
+        self.square_error = self.square_error + error_k * error_k * self.tracked;
+        self.tracked_s = self.tracked_s + self.tracked;
+    }
+
+    /// What a lane comes to.
+    pub fn summary(
+        &self,
+        lane: usize,
+        seconds: u32,
+        segments: &[Segment],
+        max_abs_pmv_15min: Option<f64>,
+        end: BusState,
+    ) -> Summary {
+        debug_assert!(lane < LANES);
+        let of = |sum: &Lanes| sum.0[lane];
+        let optima = || segments.iter().map(|s| &s.optimum);
         Summary {
-            seconds: self.seconds,
-            mean_hvac_power_w: self.energy_j / f64::from(self.seconds.max(1)),
-            static_mean_hvac_power_w: mission.segments.iter().map(|s| s.optimum.hvac_power_w()).sum::<f64>() / count,
-            max_abs_pmv_15min: self.max_abs_pmv,
-            static_max_abs_pmv: mission.segments.iter().map(|s| s.optimum.pmv.abs()).fold(0.0, f64::max),
-            saturated_fraction: share(self.saturated_s, self.seconds),
-            tracking_error_k: (self.square_error / tracked).sqrt(),
+            seconds,
+            mean_hvac_power_w: of(&self.energy_j) / f64::from(seconds),
+            static_mean_hvac_power_w: optima().map(|o| o.hvac_power_w()).sum::<f64>() / segments.len() as f64,
+            max_abs_pmv_15min,
+            static_max_abs_pmv: optima().map(|o| o.pmv.abs()).fold(0.0, f64::max),
+            saturated_fraction: of(&self.saturated_s) / f64::from(seconds),
+            tracking_error_k: (of(&self.square_error) / of(&self.tracked_s).max(1.0)).sqrt(),
             end,
         }
     }

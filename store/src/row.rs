@@ -12,18 +12,19 @@ pub(crate) async fn begin(c: &mut SqliteConnection) -> Result<Transaction<'_, Sq
     Ok(c.begin_with("BEGIN IMMEDIATE").await?)
 }
 
-/// A row on its way into a table.
+/// A row on its way into a table, or several.
 pub(crate) struct Insert {
     verb: &'static str,
     table: &'static str,
     columns: Vec<&'static str>,
+    rows: usize,
     arguments: SqliteArguments,
 }
 
 impl Insert {
     /// A row that is not there yet.
     pub fn into(table: &'static str) -> Self {
-        Self { verb: "INSERT", table, columns: Vec::new(), arguments: SqliteArguments::default() }
+        Self { verb: "INSERT", table, columns: Vec::new(), rows: 1, arguments: SqliteArguments::default() }
     }
 
     /// A row that takes the place of one with the same key.
@@ -37,14 +38,22 @@ impl Insert {
         column: &'static str,
         value: impl Encode<'q, Sqlite> + Type<Sqlite>,
     ) -> Result<Self, StoreError> {
-        self.columns.push(column);
+        if self.rows == 1 {
+            self.columns.push(column);
+        }
         self.arguments.add(value).map_err(sqlx::Error::Encode)?;
         Ok(self)
     }
 
-    /// Writes the row; gives its id where the table has one.
+    /// Begins another row; its columns come in the same order.
+    pub fn another(mut self) -> Self {
+        self.rows += 1;
+        self
+    }
+
+    /// Writes the row; gives its id, or that of the last of several, where the table has one.
     pub async fn execute(self, c: &mut SqliteConnection) -> Result<i64, StoreError> {
-        let sql = insert_sql(self.verb, self.table, &self.columns, 1);
+        let sql = insert_sql(self.verb, self.table, &self.columns, self.rows);
         // The text is built from constants alone.
         Ok(sqlx::query_with(AssertSqlSafe(sql), self.arguments).execute(c).await?.last_insert_rowid())
     }

@@ -122,28 +122,6 @@ impl Store {
         })
     }
 
-    /// Gives simulated missions new keys, where the old ones say the same in another way.
-    ///
-    /// # Errors
-    /// [`StoreError::Refused`], [`StoreError::Damaged`].
-    pub fn rekey_simulations(&mut self, grid: &StoredGrid, keys: &[(SimulationId, String)]) -> Result<(), StoreError> {
-        self.drive(async |c| {
-            let mut tx = begin(c).await?;
-            for (id, key) in keys {
-                let sql = "UPDATE simulated_mission SET simulation_key = ? WHERE design_id = ? AND window_id = ?
-                    AND source_file_id = (SELECT source_file_id FROM source_file WHERE path = ?)";
-                sqlx::query(sql)
-                    .bind(key)
-                    .bind(grid.design_ids[id.design])
-                    .bind(grid.window_ids[id.window])
-                    .bind(&id.source_path)
-                    .execute(&mut *tx)
-                    .await?;
-            }
-            commit(tx).await
-        })
-    }
-
     /// Forgets simulated missions.
     ///
     /// # Errors
@@ -158,20 +136,22 @@ impl Store {
         })
     }
 
-    /// Writes missions in one transaction; what is there of one is replaced.
+    /// Writes missions, of which nothing is there yet, in one transaction.
     ///
     /// # Errors
     /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn put_simulations(&mut self, grid: &StoredGrid, rows: &[SimulationRow]) -> Result<(), StoreError> {
         self.drive(async |c| {
             let mut tx = begin(c).await?;
-            for row in rows {
-                forget(&mut tx, grid, &row.id).await?;
+            // The rows of a mission follow each other.
+            for rows in rows.chunk_by(|a, b| a.id.source_path == b.id.source_path) {
                 let sql = "SELECT source_file_id FROM source_file WHERE path = ?";
-                let found = sqlx::query(sql).bind(&row.id.source_path).fetch_optional(&mut *tx).await?;
-                let found = found.ok_or_else(|| StoreError::UnknownFile(row.mission.clone()))?;
+                let found = sqlx::query(sql).bind(&rows[0].id.source_path).fetch_optional(&mut *tx).await?;
+                let found = found.ok_or_else(|| StoreError::UnknownFile(rows[0].mission.clone()))?;
                 let file: i64 = found.try_get("source_file_id")?;
-                put(&mut tx, grid, file, row).await?;
+                for row in rows {
+                    put(&mut tx, grid, file, row).await?;
+                }
             }
             commit(tx).await
         })
@@ -259,35 +239,34 @@ async fn forget(c: &mut SqliteConnection, grid: &StoredGrid, id: &SimulationId) 
 }
 
 async fn put(c: &mut SqliteConnection, grid: &StoredGrid, file: i64, row: &SimulationRow) -> Result<(), StoreError> {
-    let keyed = |table| {
-        Insert::into(table)
+    let keyed = |insert: Insert| {
+        insert
             .set("source_file_id", file)?
             .set("design_id", grid.design_ids[row.id.design])?
             .set("window_id", grid.window_ids[row.id.window])?
             .set("simulation_key", row.key.as_str())?
             .set("mission", row.mission.as_str())
     };
-    match &row.result {
+    let replays = match &row.result {
         Err(reason) => {
-            keyed("unsimulated_mission")?.set("reason", reason.as_str())?.execute(c).await?;
+            let insert = keyed(Insert::into("unsimulated_mission"))?.set("reason", reason.as_str())?;
+            return insert.execute(c).await.map(|_| ());
         }
-        Ok(replays) => {
-            for (replay, s) in replays {
-                keyed("simulated_mission")?
-                    .set("controller", replay.name)?
-                    .set("month", row.month)?
-                    .set("ambient_k", row.ambient_k)?
-                    .set("seconds", s.seconds)?
-                    .set("mean_hvac_power_w", s.mean_hvac_power_w)?
-                    .set("static_mean_hvac_power_w", s.static_mean_hvac_power_w)?
-                    .set("max_abs_pmv_15min", s.max_abs_pmv_15min)?
-                    .set("static_max_abs_pmv", s.static_max_abs_pmv)?
-                    .set("saturated_fraction", s.saturated_fraction)?
-                    .set("tracking_error_k", s.tracking_error_k)?
-                    .execute(c)
-                    .await?;
-            }
-        }
+        Ok(replays) => replays,
+    };
+    let mut insert = Insert::into("simulated_mission");
+    for (n, (replay, s)) in replays.iter().enumerate() {
+        insert = keyed(if n == 0 { insert } else { insert.another() })?
+            .set("controller", replay.name)?
+            .set("month", row.month)?
+            .set("ambient_k", row.ambient_k)?
+            .set("seconds", s.seconds)?
+            .set("mean_hvac_power_w", s.mean_hvac_power_w)?
+            .set("static_mean_hvac_power_w", s.static_mean_hvac_power_w)?
+            .set("max_abs_pmv_15min", s.max_abs_pmv_15min)?
+            .set("static_max_abs_pmv", s.static_max_abs_pmv)?
+            .set("saturated_fraction", s.saturated_fraction)?
+            .set("tracking_error_k", s.tracking_error_k)?;
     }
-    Ok(())
+    insert.execute(c).await.map(|_| ())
 }

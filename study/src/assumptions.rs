@@ -86,6 +86,36 @@ pub fn assumptions(study: &Study) -> Vec<Assumption> {
         "the study's own file; the paper computes them from a city model that is not published",
         true,
     );
+    if !study.simulated_windows.is_empty() {
+        let d = &study.dynamics;
+        let (gain, integral_s) = (d.controller_gain_w_k, d.controller_integral_s);
+        add("cabin controller", format!("PI, {gain} W/K, {integral_s} s"), "paper, section on the validation", false);
+        add(
+            "anti-windup",
+            "at a limit the integral stands still where it would wind up".to_owned(),
+            "the paper does not name its own",
+            true,
+        );
+        add("power limit of a heat pump", format!("{} W", d.heat_pump_limit_w), "paper, model constants", false);
+        add(
+            "power limits of PTC, air conditioning and radiant heaters",
+            format!("{} W, {} W, {} W", d.ptc_limit_w, d.cooling_limit_w, d.heater_limit_w),
+            "the paper states none; air conditioning as the heat pump, which is the same machine",
+            true,
+        );
+        add(
+            "controller of the radiant heaters",
+            format!("PI, {} W/K, {} s", d.heater_gain_w_k, d.heater_integral_s),
+            "the paper does not say how they hold their temperature",
+            true,
+        );
+        add(
+            "lag of the air unit",
+            format!("{} s for heat pump and air conditioning; PTC gives its heat at once", d.air_unit_time_constant_s),
+            "paper, eq. vcc-ode",
+            false,
+        );
+    }
     let changed = changed_constants(v);
     if !changed.is_empty() {
         add("constants that differ from the paper's bus", changed.join(", "), "the study file", false);

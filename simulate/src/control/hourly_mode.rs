@@ -1,37 +1,26 @@
-//! The paper's validation: operating mode, curtain and heaters of the optimum are held within each segment, and its cabin
-//! temperature is tracked.
+//! [`Law::HourlyMode`](super::Law::HourlyMode).
 
-use super::loops::Setpoints;
-use super::{Controller, Demand, Loops, Measurements};
+use cabin::OperatingMode;
+
+use super::Setting;
 use crate::Segment;
 
-/// The law with its state.
-#[derive(Debug, Clone, Copy)]
-pub struct HourlyMode<'m> {
-    segments: &'m [Segment],
-    segment_s: u32,
-    loops: Loops,
-}
-
-impl<'m> HourlyMode<'m> {
-    /// Replays segments of `segment_s` seconds, one after the other.
-    #[must_use]
-    pub fn new(segments: &'m [Segment], segment_s: u32, loops: Loops) -> Self {
-        Self { segments, segment_s, loops }
-    }
-}
-
-impl Controller for HourlyMode<'_> {
-    #[inline]
-    fn command(&mut self, now: &Measurements) -> Demand {
-        let o = &self.segments[(now.second / self.segment_s) as usize].optimum;
-        self.loops.set_mode(o.mode);
-        self.loops.set_heaters(o.devices.radiant_heaters);
-        let setpoints = Setpoints {
-            cabin_k: o.temperatures.cabin_k,
-            radiant_heater_k: o.temperatures.radiant_heater_k,
-            air_curtain_on: o.devices.air_curtain,
-        };
-        self.loops.command(&setpoints, now)
+pub(super) fn setting(segment: &Segment) -> Setting {
+    let o = &segment.optimum;
+    let cabin_k = o.temperatures.cabin_k;
+    let (heat_below_k, cool_above_k) = match o.mode {
+        OperatingMode::Heating => (f64::INFINITY, f64::INFINITY),
+        OperatingMode::Passive => (f64::NEG_INFINITY, f64::INFINITY),
+        OperatingMode::Cooling => (f64::NEG_INFINITY, f64::NEG_INFINITY),
+    };
+    Setting {
+        heating_k: cabin_k,
+        cooling_k: cabin_k,
+        heat_below_k,
+        cool_above_k,
+        stop_beyond_k: f64::INFINITY,
+        begins_anew: true,
+        radiant_heater_k: o.devices.radiant_heaters.then_some(o.temperatures.radiant_heater_k),
+        air_curtain: o.devices.air_curtain,
     }
 }

@@ -1,111 +1,211 @@
-//! The PI loops of air unit and radiant heaters that every law drives.
+//! The state machine of the air unit and the PI loops of air unit and radiant heaters, of all lanes.
+//!
+//! A loop's command is gain · error + integral, within its limits. While a limit holds it and the error would drive it farther,
+//! the integral stands still (anti-windup by conditional integration: a substitute, the paper does not name its own).
 
-use cabin::{Design, OperatingMode, Operation};
+use cabin::{OperatingMode, Operation, Real};
 
-use super::{Demand, Measurements, PiController};
-use crate::{Commands, Dynamics, PowerLimits, Scenario};
+use super::Setting;
+use crate::lanes::{LANES, Lanes};
+use crate::{Dynamics, PowerLimits};
 
-/// Setpoints of a second.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Setpoints {
-    /// Of the cabin in K.
-    pub cabin_k: f64,
-    /// Of the radiant heaters in K, while they are on.
-    pub radiant_heater_k: f64,
-    /// Whether the air curtains run.
-    pub air_curtain_on: bool,
+/// All loops with their states. What follows from mode and setting is ready as numbers of the lanes.
+#[derive(Debug, Clone)]
+pub(crate) struct Loops {
+    gains: [Gain; 2],
+    limits: [PowerLimits; LANES],
+    settings: [Setting; LANES],
+    modes: [OperatingMode; LANES],
+    /// 1 while heating, −1 while cooling, 0 otherwise.
+    sign: Lanes,
+    setpoint_k: Lanes,
+    start_below_k: Lanes,
+    start_above_k: Lanes,
+    stop_beyond_k: Lanes,
+    low_w: Lanes,
+    high_w: Lanes,
+    integral_w: Lanes,
+    heater_setpoint_k: Lanes,
+    heater_high_w: Lanes,
+    heater_integral_w: Lanes,
+    /// 1 where the air curtains run, 0 elsewhere.
+    pub curtain: Lanes,
 }
 
-/// Both loops with their states: operating mode, whether the heaters are on, and the integrals.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Loops {
-    cabin: PiController,
-    heaters: PiController,
-    limits: PowerLimits,
-    mode: OperatingMode,
-    heaters_on: bool,
-    cabin_integral_w: f64,
-    heater_integral_w: f64,
+/// Gain in W/K, and gain over the integral time in W/(K s).
+#[derive(Debug, Clone, Copy)]
+struct Gain {
+    w_k: f64,
+    w_k_s: f64,
 }
+
+/// What the loops ask for in a second.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Demand {
+    /// Electric power of the air unit in W; negative where it cools.
+    pub air_unit_power_w: Lanes,
+    /// Electric power of the radiant heaters in W.
+    pub radiant_heater_power_w: Lanes,
+    /// 1 where a limit keeps the air unit from giving what is wanted, 0 elsewhere.
+    pub held_back: Lanes,
+}
+
+/// Everything off, for ever.
+const OFF: Setting = Setting {
+    heating_k: 0.0,
+    cooling_k: 0.0,
+    heat_below_k: f64::NEG_INFINITY,
+    cool_above_k: f64::INFINITY,
+    stop_beyond_k: f64::INFINITY,
+    begins_anew: false,
+    radiant_heater_k: None,
+    air_curtain: false,
+};
 
 impl Loops {
     /// Loops without memory, everything off.
-    #[must_use]
-    pub fn new(design: &Design, dynamics: &Dynamics, scenario: Scenario) -> Self {
-        Self {
-            cabin: PiController { gain_w_k: dynamics.controller_gain_w_k, integral_s: dynamics.controller_integral_s },
-            heaters: PiController { gain_w_k: dynamics.heater_gain_w_k, integral_s: dynamics.heater_integral_s },
-            limits: scenario.limits.of(design, dynamics),
-            mode: OperatingMode::Passive,
-            heaters_on: false,
-            cabin_integral_w: 0.0,
-            heater_integral_w: 0.0,
-        }
+    pub fn new(dynamics: &Dynamics, limits: [PowerLimits; LANES]) -> Self {
+        let gain = |w_k: f64, integral_s: f64| Gain { w_k, w_k_s: w_k / integral_s };
+        let mut loops = Self {
+            gains: [
+                gain(dynamics.controller_gain_w_k, dynamics.controller_integral_s),
+                gain(dynamics.heater_gain_w_k, dynamics.heater_integral_s),
+            ],
+            limits,
+            settings: [OFF; LANES],
+            modes: [OperatingMode::Passive; LANES],
+            sign: Lanes::ZERO,
+            setpoint_k: Lanes::ZERO,
+            start_below_k: Lanes::ZERO,
+            start_above_k: Lanes::ZERO,
+            stop_beyond_k: Lanes::ZERO,
+            low_w: Lanes::ZERO,
+            high_w: Lanes::ZERO,
+            integral_w: Lanes::ZERO,
+            heater_setpoint_k: Lanes::ZERO,
+            heater_high_w: Lanes::ZERO,
+            heater_integral_w: Lanes::ZERO,
+            curtain: Lanes::ZERO,
+        };
+        (0..LANES).for_each(|lane| loops.refresh(lane));
+        loops
     }
 
-    /// The loops as they stand after a long time in an optimum.
-    #[must_use]
-    pub fn settled(mut self, o: &Operation) -> Self {
-        self.mode = o.mode;
-        self.heaters_on = o.devices.radiant_heaters;
-        self.cabin_integral_w = match o.mode {
+    /// A lane as it stands after a long time in an optimum.
+    pub fn settle(&mut self, lane: usize, o: &Operation) {
+        self.modes[lane] = o.mode;
+        self.settings[lane].radiant_heater_k = o.devices.radiant_heaters.then_some(o.temperatures.radiant_heater_k);
+        self.integral_w.0[lane] = match o.mode {
             OperatingMode::Cooling => -o.air_unit_power_w,
             OperatingMode::Passive | OperatingMode::Heating => o.air_unit_power_w,
         };
-        self.heater_integral_w = o.radiant_heater_power_w;
-        self
+        self.heater_integral_w.0[lane] = o.radiant_heater_power_w;
     }
 
-    pub(super) fn mode(&self) -> OperatingMode {
-        self.mode
+    /// Begins a setting. Radiant heaters that are switched on start without memory.
+    pub fn begin(&mut self, lane: usize, setting: Setting, cabin: Lanes) {
+        if setting.radiant_heater_k.is_some() != self.settings[lane].radiant_heater_k.is_some() {
+            self.heater_integral_w.0[lane] = 0.0;
+        }
+        self.settings[lane] = setting;
+        if setting.begins_anew {
+            self.choose(lane, cabin.0[lane]);
+        }
+        self.refresh(lane);
     }
 
-    /// What the air unit would be asked for with this error in K, without limits.
-    pub(super) fn wanted_w(&self, error_k: f64) -> f64 {
-        self.cabin_integral_w + self.cabin.gain_w_k * error_k
+    pub fn modes(&self) -> &[OperatingMode; LANES] {
+        &self.modes
     }
 
-    /// Sets the operating mode; a new one starts without memory.
-    pub(super) fn set_mode(&mut self, mode: OperatingMode) {
-        if mode != self.mode {
-            self.mode = mode;
-            self.cabin_integral_w = 0.0;
+    /// Whether any lane may not stay in its mode.
+    #[inline(always)]
+    pub fn want_another_mode(&self, cabin: Lanes) -> bool {
+        let (zero, one) = (Lanes::ZERO, Lanes::ONE);
+        let starts = self.start_below_k.above(cabin, one, cabin.above(self.start_above_k, one, zero));
+        let idle = self.wanted_w(cabin).above(zero, zero, one);
+        let beyond_k = self.sign * (cabin - self.setpoint_k);
+        (starts + beyond_k.above(self.stop_beyond_k, idle, zero)).any()
+    }
+
+    /// What the air unit would be asked for without limits, in the direction of its mode.
+    #[inline(always)]
+    fn wanted_w(&self, cabin: Lanes) -> Lanes {
+        self.sign * (self.integral_w + (self.setpoint_k - cabin) * self.gains[0].w_k)
+    }
+
+    /// Lets every lane that may not stay in its mode choose anew.
+    pub fn choose_modes(&mut self, cabin: Lanes) {
+        let wanted_w = self.wanted_w(cabin);
+        for lane in 0..LANES {
+            let cabin_k = cabin.0[lane];
+            let beyond_k = self.sign.0[lane] * (cabin_k - self.setpoint_k.0[lane]);
+            let stops = beyond_k > self.stop_beyond_k.0[lane] && wanted_w.0[lane] <= 0.0;
+            if stops || self.modes[lane] == OperatingMode::Passive {
+                self.choose(lane, cabin_k);
+                self.refresh(lane);
+            }
         }
     }
 
-    /// Switches the radiant heaters; switched on they start without memory.
-    pub(super) fn set_heaters(&mut self, on: bool) {
-        if on != self.heaters_on {
-            self.heaters_on = on;
-            self.heater_integral_w = 0.0;
+    /// A new mode starts without memory.
+    fn choose(&mut self, lane: usize, cabin_k: f64) {
+        let setting = &self.settings[lane];
+        let mode = if cabin_k < setting.heat_below_k {
+            OperatingMode::Heating
+        } else if cabin_k > setting.cool_above_k {
+            OperatingMode::Cooling
+        } else {
+            OperatingMode::Passive
+        };
+        if mode != self.modes[lane] {
+            self.modes[lane] = mode;
+            self.integral_w.0[lane] = 0.0;
         }
+    }
+
+    /// Makes ready what follows from mode and setting.
+    fn refresh(&mut self, lane: usize) {
+        let (s, limits) = (&self.settings[lane], &self.limits[lane]);
+        let never = [f64::NEG_INFINITY, f64::INFINITY];
+        let (sign, setpoint_k, [low_w, high_w], start_k) = match self.modes[lane] {
+            OperatingMode::Heating => (1.0, s.heating_k, [0.0, limits.heating_w], never),
+            OperatingMode::Cooling => (-1.0, s.cooling_k, [-limits.cooling_w, 0.0], never),
+            OperatingMode::Passive => (0.0, s.heating_k, [0.0, 0.0], [s.heat_below_k, s.cool_above_k]),
+        };
+        self.sign.0[lane] = sign;
+        self.setpoint_k.0[lane] = setpoint_k;
+        [self.start_below_k.0[lane], self.start_above_k.0[lane]] = start_k;
+        self.stop_beyond_k.0[lane] = s.stop_beyond_k;
+        [self.low_w.0[lane], self.high_w.0[lane]] = [low_w, high_w];
+        self.heater_setpoint_k.0[lane] = s.radiant_heater_k.unwrap_or(0.0);
+        self.heater_high_w.0[lane] = if s.radiant_heater_k.is_some() { limits.radiant_heaters_w } else { 0.0 };
+        self.curtain.0[lane] = f64::from(u8::from(s.air_curtain));
     }
 
     /// The commands of a second.
-    #[inline]
-    pub(super) fn command(&mut self, setpoints: &Setpoints, now: &Measurements) -> Demand {
-        let (low_w, high_w) = match self.mode {
-            OperatingMode::Heating => (0.0, self.limits.heating_w),
-            OperatingMode::Cooling => (-self.limits.cooling_w, 0.0),
-            OperatingMode::Passive => (0.0, 0.0),
-        };
-        let (air_unit_power_w, beyond_w) = if self.mode == OperatingMode::Passive {
-            (0.0, 0.0)
-        } else {
-            self.cabin.command_w(setpoints.cabin_k - now.cabin_k, &mut self.cabin_integral_w, low_w, high_w)
-        };
-        let held_back = match self.mode {
-            OperatingMode::Heating => beyond_w > 0.0,
-            OperatingMode::Cooling => beyond_w < 0.0,
-            OperatingMode::Passive => false,
-        };
-        let radiant_heater_power_w = if self.heaters_on {
-            let error_k = setpoints.radiant_heater_k - now.radiant_heater_k;
-            self.heaters.command_w(error_k, &mut self.heater_integral_w, 0.0, self.limits.radiant_heaters_w).0
-        } else {
-            0.0
-        };
-        let air_curtain_on = setpoints.air_curtain_on;
-        Demand { commands: Commands { air_unit_power_w, radiant_heater_power_w, air_curtain_on }, held_back }
+    #[inline(always)]
+    pub fn command(&mut self, cabin: Lanes, radiant_heater: Lanes) -> Demand {
+        let [air_unit, heaters] = self.gains;
+        let error_k = self.setpoint_k - cabin;
+        let (air_unit_power_w, beyond_w) = air_unit.command_w(error_k, &mut self.integral_w, self.low_w, self.high_w);
+        let error_k = self.heater_setpoint_k - radiant_heater;
+        let (radiant_heater_power_w, _) =
+            heaters.command_w(error_k, &mut self.heater_integral_w, Lanes::ZERO, self.heater_high_w);
+        let held_back = (self.sign * beyond_w).above(Lanes::ZERO, Lanes::ONE, Lanes::ZERO);
+        Demand { air_unit_power_w, radiant_heater_power_w, held_back }
+    }
+}
+
+impl Gain {
+    /// The command within `low … high`, and how far it is held back by them.
+    #[inline(always)]
+    fn command_w(self, error_k: Lanes, integral_w: &mut Lanes, low: Lanes, high: Lanes) -> (Lanes, Lanes) {
+        let next_w = *integral_w + error_k * self.w_k_s;
+        let wanted_w = error_k * self.w_k + next_w;
+        let command_w = wanted_w.max(low).min(high);
+        let beyond_w = wanted_w - command_w;
+        *integral_w = (beyond_w * error_k).above(Lanes::ZERO, *integral_w, next_w);
+        (command_w, beyond_w)
     }
 }
