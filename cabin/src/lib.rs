@@ -38,7 +38,9 @@ pub use disturbances::{Disturbances, DisturbancesError};
 pub use flows::{HeatFlows, Slopes, Temperatures};
 pub use load::LoadChange;
 pub use operation::{Candidate, Infeasible, OperatingMode, Operation, Optimum, Outcome};
-pub use passengers::{Panel, PassengerViews, ceiling_panels, panel_view_factor, place_passengers};
+pub use passengers::{
+    Panel, PassengerViews, ceiling_panels, panel_view_factor, passenger_positions_m, place_passengers,
+};
 pub use pmv::{PmvModel, PmvPoint, StandardRange, predicted_percentage_dissatisfied, water_vapour_pressure_pa};
 pub use random::unit_interval;
 pub use real::Real;

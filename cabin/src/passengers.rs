@@ -80,22 +80,25 @@ pub fn panel_view_factor(vehicle: &Vehicle, panels: &[Panel], along_m: f64, acro
     sum / (4.0 * side_area + top_area)
 }
 
-/// View factors of passengers who stand anywhere on the floor with equal probability, in the order of their placement.
+/// View factors of the passengers, in the order of their placement.
 #[must_use]
 pub fn place_passengers(vehicle: &Vehicle) -> Vec<f64> {
     let panels = ceiling_panels(vehicle);
+    let view = |[along_m, across_m]: [f64; 2]| panel_view_factor(vehicle, &panels, along_m, across_m);
+    passenger_positions_m(vehicle).into_iter().map(view).collect()
+}
+
+/// Where passengers stand, along and across the bus in m: anywhere on the floor with equal probability, in the order of their
+/// placement.
+#[must_use]
+pub fn passenger_positions_m(vehicle: &Vehicle) -> Vec<[f64; 2]> {
     let mut random = ChaCha8Rng::seed_from_u64(vehicle.passenger_seed);
     let half = vehicle.passenger_width_m / 2.0;
     let mut within = |extent_m: f64| {
         let unit = unit_interval(random.next_u64());
         half + unit * (extent_m - 2.0 * half)
     };
-    (0..vehicle.passenger_placements)
-        .map(|_| {
-            let (along_m, across_m) = (within(vehicle.cabin_length_m), within(vehicle.cabin_width_m));
-            panel_view_factor(vehicle, &panels, along_m, across_m)
-        })
-        .collect()
+    (0..vehicle.passenger_placements).map(|_| [within(vehicle.cabin_length_m), within(vehicle.cabin_width_m)]).collect()
 }
 
 impl PassengerViews {
