@@ -76,6 +76,8 @@ pub enum Command {
     Solve(SolveArgs),
     /// Simulate every mission second by second, beside what the steady-state optima foresee.
     Simulate(StudyArgs),
+    /// Extract setpoints for a controller on board from the optima: heating and cooling profiles, air-curtain thresholds.
+    Control(ControlArgs),
     /// Write tables and figures.
     Report(StudyArgs),
     /// All stages, only what is missing; without a study file it makes a demo and runs that.
@@ -244,6 +246,20 @@ pub struct DemoArgs {
     /// With --like: bus to take; may be given several times [default: 183].
     #[arg(long = "bus", value_name = "NUMBER", requires = "like")]
     pub buses: Vec<u32>,
+}
+
+#[derive(Debug, ClapArgs)]
+pub struct ControlArgs {
+    #[command(flatten)]
+    pub study: StudyArgs,
+
+    /// Share of the hours in a mode whose comfort a profile keeps, 0.5 to 1.
+    #[arg(long, value_name = "SHARE", default_value_t = 0.98)]
+    pub coverage: f64,
+
+    /// Folder for a TOML and a CSV of each design and comfort window, beside the study file.
+    #[arg(long, value_name = "DIR", default_value = "setpoints")]
+    pub to: PathBuf,
 }
 
 #[derive(Debug, ClapArgs)]

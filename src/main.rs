@@ -88,6 +88,10 @@ fn dispatch(args: &Args, console: &Console) -> Result<Ending, Failure> {
             run(&open(&solve.study)?.solved_by(solve.method.into()), &[Stage::Solve], options, console)
         }
         Command::Simulate(study) => run(&open(study)?, &[Stage::Simulate], options, console),
+        Command::Control(control) => {
+            let (folder, found) = pipeline::control(&open(&control.study)?, control.coverage, &control.to)?;
+            print::setpoints(&folder, &found)
+        }
         Command::Report(study) => run(&open(study)?, &[Stage::Report], options, console),
         Command::Run { solve: typed, dry_run: true } => {
             let study = open(&typed.study)?.solved_by(typed.method.into());

@@ -1,8 +1,10 @@
 //! What came of a command, in words on stdout.
 
 use anyhow::anyhow;
-use cabin::celsius;
-use pipeline::{Check, Done, Fetched, FetchedFile, Point, Shown, Stage, StagePlan, Status, Verification, write_whole};
+use cabin::{OperatingMode, celsius};
+use pipeline::{
+    Check, Done, Fetched, FetchedFile, Point, Setpoints, Shown, Stage, StagePlan, Status, Verification, write_whole,
+};
 use serde::Serialize;
 use solve::Method;
 use std::path::Path;
@@ -37,6 +39,44 @@ pub fn run(study: &Study, stages: &[Stage], done: &Done, elapsed: Duration) -> R
         ([Stage::Report], 1..) => Ok(Ending::Pending),
         _ => Ok(Ending::of(summary.is_complete() && done.news.is_empty())),
     }
+}
+
+pub fn setpoints(folder: &Path, found: &[Setpoints]) -> Result<Ending, Failure> {
+    for of in found {
+        let range = format!("{} within PMV {} … {}", of.design, of.window.pmv_min(), of.window.pmv_max());
+        for (mode, profile) in [("heating", &of.heating), ("cooling", &of.cooling)] {
+            match profile {
+                Ok(p) => say(format_args!(
+                    "{range}, {mode}: {:.1} °C at {:.0} °C outside … {:.1} °C at {:.0} °C; covers {:.1} % of {} hours",
+                    p.at(p.valid_c[0]),
+                    p.valid_c[0],
+                    p.at(p.valid_c[1]),
+                    p.valid_c[1],
+                    100.0 * p.coverage,
+                    p.points
+                ))?,
+                Err(reason) => say(format_args!("{range}, {mode}: no profile; {reason}"))?,
+            }
+        }
+        for curtain in &of.curtains {
+            let mode = if curtain.mode == OperatingMode::Cooling { "cooling" } else { "heating" };
+            let analytic = curtain.analytic_k.map_or_else(|| "never".to_owned(), |k| format!("{k:.1} K"));
+            match &curtain.of_optima {
+                Some(t) => say(format_args!(
+                    "{range}, {mode}: air curtains above {:.1} K, wrong in {:.1} % of the hours; by the model {analytic}",
+                    t.value,
+                    100.0 * t.misclassified
+                ))?,
+                None => say(format_args!("{range}, {mode}: air curtains always or never; by the model {analytic}"))?,
+            }
+        }
+        if let Some(t) = &of.heaters_below_c {
+            let wrong = 100.0 * t.misclassified;
+            say(format_args!("{range}: radiant heaters below {:.1} °C, wrong in {wrong:.1} % of the hours", t.value))?;
+        }
+    }
+    say(format_args!("{} files in {}", 2 * found.len(), folder.display()))?;
+    Ok(Ending::Done)
 }
 
 pub fn check(study: &Study, check: &Check) -> Result<Ending, Failure> {

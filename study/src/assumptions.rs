@@ -1,7 +1,8 @@
 //! What the numbers of a report rest on, with sources.
 
-use cabin::{Heating, Vehicle, named_cooling_cops, named_heating_cops};
+use cabin::{Heating, named_cooling_cops, named_heating_cops};
 use ingest::weather::WeatherFormat;
+use serde::Serialize;
 
 use crate::Study;
 
@@ -116,7 +117,7 @@ pub fn assumptions(study: &Study) -> Vec<Assumption> {
             false,
         );
     }
-    let changed = changed_constants(v);
+    let changed = [changed_constants(v), changed_constants(&study.dynamics)].concat();
     if !changed.is_empty() {
         add("constants that differ from the paper's bus", changed.join(", "), "the study file", false);
     }
@@ -128,12 +129,12 @@ fn cop(text: &str, named: &[(&'static str, cabin::Cop, &'static str)]) -> (Strin
     (text.to_owned(), source)
 }
 
-fn changed_constants(vehicle: &Vehicle) -> Vec<String> {
-    let fields = |v: &Vehicle| match serde_json::to_value(v) {
+fn changed_constants<T: Serialize + Default>(constants: &T) -> Vec<String> {
+    let fields = |v: &T| match serde_json::to_value(v) {
         Ok(serde_json::Value::Object(map)) => map.into_iter().collect::<Vec<_>>(),
         _ => Vec::new(),
     };
-    let paper = fields(&Vehicle::default());
+    let paper = fields(&T::default());
     let differs = |(name, value): &(String, serde_json::Value)| !paper.contains(&(name.clone(), value.clone()));
-    fields(vehicle).into_iter().filter(differs).map(|(name, value)| format!("{name} = {value}")).collect()
+    fields(constants).into_iter().filter(differs).map(|(name, value)| format!("{name} = {value}")).collect()
 }

@@ -1,0 +1,17 @@
+//! What a controller without foresight can learn from a year of optima (paper, section "Case Study 2: Causal Online Control").
+//!
+//! The optima of a design in a comfort window are a cloud of cabin over ambient temperatures, by operating mode. A heating
+//! [`Profile`] runs along its upper edge, a cooling profile along its lower edge: who tracks them meets the window in the share
+//! of the year that they cover. [`Threshold`]s say from which temperature difference on the air curtains pay, beside the one
+//! that follows from the model ([`curtain_threshold_k`]).
+//!
+//! Pure functions of plain structs: no files, no clock, no database.
+
+mod analytic;
+mod fit;
+mod profile;
+mod threshold;
+
+pub use analytic::curtain_threshold_k;
+pub use profile::{Edge, FitError, Point, Profile, Shape, fit};
+pub use threshold::{Switch, Threshold, threshold};
