@@ -48,10 +48,10 @@ pub fn setpoints(folder: &Path, found: &[Setpoints]) -> Result<Ending, Failure> 
             match profile {
                 Ok(p) => say(format_args!(
                     "{range}, {mode}: {:.1} °C at {:.0} °C outside … {:.1} °C at {:.0} °C; covers {:.1} % of {} hours",
-                    p.at(p.valid_c[0]),
-                    p.valid_c[0],
-                    p.at(p.valid_c[1]),
-                    p.valid_c[1],
+                    p.curve.at(p.curve.valid_c[0]),
+                    p.curve.valid_c[0],
+                    p.curve.at(p.curve.valid_c[1]),
+                    p.curve.valid_c[1],
                     100.0 * p.coverage,
                     p.points
                 ))?,

@@ -8,10 +8,12 @@
 //! Pure functions of plain structs: no files, no clock, no database.
 
 mod analytic;
+mod curve;
 mod fit;
 mod profile;
 mod threshold;
 
 pub use analytic::curtain_threshold_k;
-pub use profile::{Edge, FitError, Point, Profile, Shape, fit};
+pub use curve::{Curve, Shape};
+pub use profile::{Edge, FitError, Point, Profile, fit};
 pub use threshold::{Switch, Threshold, threshold};

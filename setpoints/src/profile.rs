@@ -1,6 +1,7 @@
-//! Setpoints over the ambient temperature.
+//! Setpoints that are fitted to the edge of a cloud.
 
 use crate::fit::{Row, least_squares};
+use crate::{Curve, Shape};
 
 /// An optimum in one operating mode.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,22 +23,11 @@ pub enum Edge {
     Lower,
 }
 
-/// The form of a profile.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Shape {
-    /// constant + linear · t + quadratic · t², t the ambient temperature in °C.
-    Quadratic([f64; 3]),
-    /// Linear between the pairs of ambient and cabin temperature in °C.
-    PiecewiseLinear(Vec<(f64, f64)>),
-}
-
-/// A setpoint in °C over the ambient temperature in °C; beyond the points that it was fitted to it stays as it is at their end.
+/// A curve along an edge of the points that it was fitted to.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Profile {
-    /// Its form.
-    pub shape: Shape,
-    /// Least and largest ambient temperature of the points in °C.
-    pub valid_c: [f64; 2],
+    /// The setpoint; its range is that of the points.
+    pub curve: Curve,
     /// Weighted share of the points on its side of comfort: at least what was asked for.
     pub coverage: f64,
     /// How many points it was fitted to.
@@ -62,22 +52,6 @@ pub enum FitError {
 const KNOTS: usize = 4;
 /// A point so close to a profile lies on it, in K.
 const ON_IT_K: f64 = 1e-6;
-
-impl Profile {
-    /// The setpoint in °C.
-    #[must_use]
-    pub fn at(&self, ambient_c: f64) -> f64 {
-        let t = ambient_c.clamp(self.valid_c[0], self.valid_c[1]);
-        match &self.shape {
-            Shape::Quadratic([constant, linear, quadratic]) => constant + t * (linear + t * quadratic),
-            Shape::PiecewiseLinear(pairs) => {
-                let after = pairs.partition_point(|(x, _)| *x <= t).clamp(1, pairs.len() - 1);
-                let ((x0, y0), (x1, y1)) = (pairs[after - 1], pairs[after]);
-                y0 + (y1 - y0) * (t - x0) / (x1 - x0)
-            }
-        }
-    }
-}
 
 /// Fits a profile that covers at least the given share of the points' weight: along the upper edge a quadratic that does not
 /// fall where points are (the colder it is, the warmer people dress, and the less warm a cabin satisfies them), along the
@@ -154,5 +128,5 @@ pub fn fit(points: &[Point], edge: Edge, coverage: f64) -> Result<Profile, FitEr
             Shape::PiecewiseLinear(coefficients.iter().enumerate().map(|(n, c)| (knot(n), sign * c)).collect())
         }
     };
-    Ok(Profile { shape, valid_c: [least, largest], coverage: coverage.min(1.0), points: points.len() })
+    Ok(Profile { curve: Curve { shape, valid_c: [least, largest] }, coverage: coverage.min(1.0), points: points.len() })
 }

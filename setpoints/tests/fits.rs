@@ -18,8 +18,8 @@ proptest! {
         for edge in [Edge::Upper, Edge::Lower] {
             let profile = fit(&points, edge, coverage).unwrap();
             let covers = |p: &&Point| match edge {
-                Edge::Upper => profile.at(p.ambient_c) >= p.cabin_c - 2e-6,
-                Edge::Lower => profile.at(p.ambient_c) <= p.cabin_c + 2e-6,
+                Edge::Upper => profile.curve.at(p.ambient_c) >= p.cabin_c - 2e-6,
+                Edge::Lower => profile.curve.at(p.ambient_c) <= p.cabin_c + 2e-6,
             };
             let share = points.iter().filter(covers).map(|p| p.weight).sum::<f64>() / total;
             prop_assert!(profile.coverage >= coverage - 1e-9, "{} of {coverage}", profile.coverage);
@@ -30,10 +30,10 @@ proptest! {
     #[test]
     fn prop_a_heating_profile_does_not_fall(points in points(), coverage in 0.5..1.0_f64) {
         let profile = fit(&points, Edge::Upper, coverage).unwrap();
-        let at = |n: i32| profile.at(-20.0 + f64::from(n) * 0.5);
+        let at = |n: i32| profile.curve.at(-20.0 + f64::from(n) * 0.5);
         prop_assert!((0..120).all(|n| at(n + 1) >= at(n) - 1e-6));
         // Beyond the points it stays.
-        prop_assert_eq!(profile.at(-90.0), profile.at(profile.valid_c[0]));
+        prop_assert_eq!(profile.curve.at(-90.0), profile.curve.at(profile.curve.valid_c[0]));
     }
 
     #[test]
@@ -65,7 +65,7 @@ fn prop_a_curve_that_is_there_is_found() {
     let points: Vec<Point> = (0..300).map(point).collect();
     let heating = fit(&points, Edge::Upper, 1.0).unwrap();
     assert_eq!((heating.coverage, heating.points), (1.0, 300));
-    let Shape::Quadratic(found) = heating.shape else { panic!("{heating:?}") };
+    let Shape::Quadratic(found) = heating.curve.shape else { panic!("{heating:?}") };
     for (found, meant) in found.iter().zip([15.0, 0.2, 0.004]) {
         assert!((found - meant).abs() < 1e-6, "{found} {meant}");
     }
@@ -73,12 +73,12 @@ fn prop_a_curve_that_is_there_is_found() {
     let mut with_outliers = points.clone();
     with_outliers.extend((0..20).map(|n| Point { ambient_c: f64::from(n), cabin_c: 40.0, weight: 1.6 }));
     let heating = fit(&with_outliers, Edge::Upper, 0.9).unwrap();
-    assert!((heating.at(5.0) - curve(5.0)).abs() < 0.01, "{heating:?}");
+    assert!((heating.curve.at(5.0) - curve(5.0)).abs() < 0.01, "{heating:?}");
     let straight: Vec<Point> = (0..100)
         .map(|n| Point { ambient_c: f64::from(n) * 0.2 + 18.0, cabin_c: 24.0 + f64::from(n % 2), weight: 1.0 })
         .collect();
     let cooling = fit(&straight, Edge::Lower, 1.0).unwrap();
-    assert!((18..38).all(|t| (cooling.at(f64::from(t)) - 24.0).abs() < 1e-6), "{cooling:?}");
+    assert!((18..38).all(|t| (cooling.curve.at(f64::from(t)) - 24.0).abs() < 1e-6), "{cooling:?}");
     assert_eq!(fit(&points[..3], Edge::Upper, 1.0), Err(FitError::TooFew(3)));
     assert_eq!(fit(&points, Edge::Upper, 0.2), Err(FitError::Coverage(0.2)));
 }

@@ -3,7 +3,7 @@
 //! They share weather, sun, doors and passengers; states, setpoints, limits and devices are numbers of the lanes. No lane sees
 //! another, so that a variant comes out the same to the bit in whatever company.
 
-use cabin::{Cabin, Heating, OperatingMode, Temperatures};
+use cabin::{Cabin, Heating, OperatingMode, Real, Temperatures};
 use pulp::{Arch, Simd, WithSimd};
 
 use crate::average::{FIRST_S, TrailingVotes, VOTE_S, Votes};
@@ -87,7 +87,8 @@ struct Drive<'a, 'm, 'v> {
     loops: Loops,
     air_units: AirUnits<'a>,
     sums: Sums,
-    door_loss_share: Lanes,
+    /// [`Cabin::door_loss_share`] with air curtains.
+    with_curtain: Lanes,
 }
 
 /// What a second of all lanes looks like, for whoever records it.
@@ -121,7 +122,8 @@ impl<'a, 'm, 'v> Drive<'a, 'm, 'v> {
         }
         let air_units = AirUnits::new(variants.map(|v| v.design), *loops.modes());
         let rates = Rates::new(dynamics);
-        Self { mission, rates, variants, x, loops, air_units, sums: Sums::new(), door_loss_share: Lanes::ONE }
+        let with_curtain = Lanes::splat(mission.minutes[0].door_loss_share(true));
+        Self { mission, rates, variants, x, loops, air_units, sums: Sums::new(), with_curtain }
     }
 
     #[inline(always)]
@@ -135,11 +137,9 @@ impl<'a, 'm, 'v> Drive<'a, 'm, 'v> {
         let seconds = mission.segments as u32 * mission.segment_s;
         let mut cabin = mission.minutes[0];
         for from_s in (0..seconds).step_by(VOTE_S) {
-            if from_s % mission.segment_s == 0 {
-                self.begin_segment((from_s / mission.segment_s) as usize, &cabin);
-            }
             if from_s % 60 == 0 {
                 cabin = mission.minutes[from_s as usize / 60].with_load(passengers, door_open_fraction);
+                self.begin_minute(from_s, &cabin);
             }
             let length = VOTE_S.min((seconds - from_s) as usize);
             let mut on_board = [false; VOTE_S];
@@ -177,17 +177,29 @@ impl<'a, 'm, 'v> Drive<'a, 'm, 'v> {
         })
     }
 
-    /// A segment begins for all lanes.
-    fn begin_segment(&mut self, number: usize, cabin: &Cabin<'_>) {
+    /// A minute begins, and with some of them a segment.
+    fn begin_minute(&mut self, second: u32, cabin: &Cabin<'_>) {
+        let segment_s = self.mission.segment_s;
+        let begins_segment = second.is_multiple_of(segment_s);
         for lane in 0..LANES {
             let variant = &self.variants[lane];
-            let segment = &variant.segments[number];
-            let setting = variant.law.setting(segment);
-            self.loops.begin(lane, setting, self.x[2]);
-            self.sums.begin(lane, segment);
-            self.door_loss_share.0[lane] = cabin.door_loss_share(setting.air_curtain);
+            if begins_segment || variant.law.is_causal() {
+                let segment = &variant.segments[(second / segment_s) as usize];
+                self.loops.begin(lane, variant.law.setting(segment, cabin.ambient_k()), self.x[2]);
+                self.sums.begin(lane, segment);
+            }
         }
+        self.follow();
+    }
+
+    /// Air units and sums follow the modes of the loops.
+    fn follow(&mut self) {
         self.air_units.follow(self.loops.modes());
+        for (lane, variant) in self.variants.iter().enumerate() {
+            if variant.law.is_causal() {
+                self.sums.track(lane, self.loops.followed(lane));
+            }
+        }
     }
 
     /// A second passes.
@@ -195,15 +207,15 @@ impl<'a, 'm, 'v> Drive<'a, 'm, 'v> {
     fn second(&mut self, cabin: &Cabin<'_>) -> Demand {
         if self.loops.want_another_mode(self.x[2]) {
             self.loops.choose_modes(self.x[2]);
-            self.air_units.follow(self.loops.modes());
+            self.follow();
         }
-        let demand = self.loops.command(self.x[2], self.x[0]);
+        let demand = self.loops.command(self.x[2], self.x[0], cabin.ambient_k());
         let second = Second {
             cabin,
             air_units: &self.air_units,
             air_unit_power_w: demand.air_unit_power_w,
             radiant_heater_power_w: demand.radiant_heater_power_w,
-            door_loss_share: self.door_loss_share,
+            door_loss_share: self.loops.curtain.above(Lanes::ZERO, self.with_curtain, Lanes::ONE),
         };
         self.x = second.step(&self.rates, &self.x);
         self.sums.add(&demand, self.loops.curtain * cabin.air_curtain_power_w(), self.x[2]);

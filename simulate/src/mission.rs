@@ -28,7 +28,7 @@ pub struct Variant<'m> {
     /// Where the mission starts, and what limits hold.
     pub scenario: Scenario,
     /// Who decides.
-    pub law: Law,
+    pub law: Law<'m>,
     /// The optima of the mission's segments.
     pub segments: &'m [Segment],
 }

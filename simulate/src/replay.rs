@@ -7,14 +7,14 @@ use crate::control::Law;
 use crate::{Limits, Scenario, Segment, Start, Variant};
 
 /// A scenario with a law, and the name that both have together.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Replay {
     /// The `controller` in the database.
     pub name: &'static str,
     /// The conditions.
     pub scenario: Scenario,
     /// Who decides on the operating mode.
-    pub law: Law,
+    pub law: Law<'static>,
 }
 
 impl Replay {

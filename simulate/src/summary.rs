@@ -22,7 +22,7 @@ pub struct Summary {
     pub static_max_abs_pmv: f64,
     /// Share of the time in which the air unit wants more than its limit allows.
     pub saturated_fraction: f64,
-    /// Root mean square of cabin temperature less setpoint in K, while the air unit is on.
+    /// Root mean square of cabin temperature less setpoint in K, while the optimum, or a causal controller, has the air unit on.
     pub tracking_error_k: f64,
     /// Temperatures and air unit at the end.
     pub end: BusState,
@@ -36,7 +36,7 @@ pub(crate) struct Sums {
     square_error: Lanes,
     /// Seconds in which the optimum has the air unit on.
     tracked_s: Lanes,
-    /// Of the present segment: 1 where it has, and the cabin temperature that it prescribes in K.
+    /// For now: 1 where it has, and the cabin temperature that it prescribes in K.
     tracked: Lanes,
     prescribed_k: Lanes,
 }
@@ -57,6 +57,12 @@ impl Sums {
     pub fn begin(&mut self, lane: usize, segment: &Segment) {
         self.tracked.0[lane] = f64::from(u8::from(segment.optimum.mode != OperatingMode::Passive));
         self.prescribed_k.0[lane] = segment.optimum.temperatures.cabin_k;
+    }
+
+    /// A lane follows a setpoint of its own: the sign of its mode, and the setpoint in K.
+    pub fn track(&mut self, lane: usize, (sign, setpoint_k): (f64, f64)) {
+        self.tracked.0[lane] = sign.abs();
+        self.prescribed_k.0[lane] = setpoint_k;
     }
 
     /// Adds a second: its demand, the power of the air curtains in W, and the cabin at its end.

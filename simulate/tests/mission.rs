@@ -4,7 +4,10 @@ use cabin::{
     Cabin, ComfortWindow, Design, Disturbances, Heating, LoadChange, OperatingMode, Operation, PassengerViews,
     Temperatures, Vehicle, kelvin,
 };
+use setpoints::Curve;
+use simulate::control::{AirCurtain, CausalController, Law};
 use simulate::{BusState, Commands, Dynamics, Instant, Mission, Replay, Segment, Summary, simulate, simulate_with};
+use simulate::{Limits, Scenario, Start, Variant};
 use testing::{TestMission, day, design, optimum, paper_designs, simulate_finely, step};
 
 fn segment(vehicle: &Vehicle, views: &PassengerViews, o: Operation, d: &Disturbances, limit: f64) -> Segment {
@@ -214,6 +217,75 @@ fn prop_a_variant_comes_out_the_same_in_whatever_company() {
     }
     let fine = simulate_finely(&mission, &Dynamics::default(), &variants[20], 20, |_| ());
     assert!((fine.mean_hvac_power_w - together[20].mean_hvac_power_w).abs() < 0.5, "{fine:?}");
+}
+
+/// A controller whose setpoints and thresholds all matter on some day of the year.
+fn causal() -> CausalController {
+    CausalController {
+        heating: Curve::through(&[(-10.0, 17.0), (10.0, 18.5), (25.0, 21.0)]).expect("three pairs"),
+        cooling: Curve::through(&[(10.0, 23.0), (35.0, 26.0)]).expect("two pairs"),
+        hysteresis_k: 1.0,
+        air_curtain: AirCurtain::Above { heating_k: 4.8, cooling_k: 4.1 },
+        heaters_below_c: Some(4.0),
+        radiant_heater_k: 343.15,
+    }
+}
+
+const FROM_DEPOT: Scenario = Scenario { start: Start::Depot, limits: Limits::Rated };
+
+#[test]
+fn prop_a_causal_controller_comes_out_as_in_the_reference() {
+    let vehicle = Vehicle::default();
+    let views = PassengerViews::new(&vehicle);
+    let designs = [paper_designs().swap_remove(4), design("all", Heating::Ptc, true, true)];
+    let controller = causal();
+    let (mut heats, mut cools, mut curtains, mut heaters) = (0, 0, 0, 0);
+    for first in [30, 1200, 2500, 3700, 5300] {
+        let test = TestMission::new(&vehicle, &views, &designs, first, 3);
+        let mission = test.mission();
+        // One variant of each design; what its optima are does not matter.
+        let variants = test.variants(&designs);
+        let of_design = |d: usize| variants[d * variants.len() / 2];
+        for variant in [of_design(0), of_design(1)] {
+            let variant = Variant { scenario: FROM_DEPOT, law: Law::Causal(&controller), ..variant };
+            let mut record = |_: usize, now: &Instant| {
+                heats += u32::from(now.commands.air_unit_power_w > 0.0);
+                cools += u32::from(now.commands.air_unit_power_w < 0.0);
+                curtains += u32::from(now.commands.air_curtain_on);
+                heaters += u32::from(now.commands.radiant_heater_power_w > 0.0);
+            };
+            let ours =
+                simulate_with(&mission, &Dynamics::default(), &[variant], &mut record).expect("it has segments")[0];
+            let fine = simulate_finely(&mission, &Dynamics::default(), &variant, 10, |_| ());
+            let off_w = (ours.mean_hvac_power_w - fine.mean_hvac_power_w).abs();
+            assert!(off_w < 0.1 + 2e-4 * fine.mean_hvac_power_w, "{first}: {ours:?} {fine:?}");
+            assert!((ours.tracking_error_k - fine.tracking_error_k).abs() < 1e-3, "{first}: {ours:?} {fine:?}");
+            let votes = [ours, fine].map(|s| s.max_abs_pmv_15min.unwrap_or(0.0));
+            assert!((votes[0] - votes[1]).abs() < 0.002, "{first}: {votes:?}");
+        }
+    }
+    assert!(heats > 1000 && cools > 1000 && curtains > 1000 && heaters > 1000, "{heats} {cools} {curtains} {heaters}");
+}
+
+#[test]
+fn prop_the_past_of_a_causal_controller_does_not_know_the_future() {
+    let vehicle = Vehicle::default();
+    let views = PassengerViews::new(&vehicle);
+    let designs = [paper_designs().swap_remove(4)];
+    let controller = causal();
+    // Two missions with the same first two hours.
+    let [long, short] = [5, 2].map(|hours| TestMission::new(&vehicle, &views, &designs, 2490, hours));
+    let seconds = |test: &TestMission<'_>, minutes: usize| {
+        let mission = test.mission();
+        let variant = Variant { scenario: FROM_DEPOT, law: Law::Causal(&controller), ..test.variants(&designs)[0] };
+        let mut seconds = Vec::new();
+        let mut record = |_: usize, now: &Instant| seconds.push(*now);
+        simulate_with(&mission, &Dynamics::default(), &[variant], &mut record).expect("it has segments");
+        seconds.truncate(60 * minutes);
+        seconds
+    };
+    // Weather is linear between the middles of the hours: up to the middle of the last hour both have the same.
+    assert_eq!(seconds(&long, 90), seconds(&short, 90));
 }
 
 #[test]

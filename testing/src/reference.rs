@@ -2,8 +2,8 @@
 //! with as many steps a second as wanted, and a vote every second that is settled. It shares the flows of the cabin with the
 //! program, and nothing else.
 
-use cabin::{Cabin, Design, Heating, OperatingMode, Operation, Temperatures};
-use simulate::control::Law;
+use cabin::{Cabin, Design, Heating, OperatingMode, Operation, Temperatures, celsius, kelvin};
+use simulate::control::{AirCurtain, Law};
 use simulate::{
     BusState, Commands, Dynamics, Instant, Limits, Mission, Segment, Start, Summary, Variant, depot_temperature_k,
 };
@@ -78,15 +78,16 @@ fn pi(gain: f64, integral_s: f64, error_k: f64, integral_w: &mut f64, low: f64, 
     (command_w, beyond_w)
 }
 
-struct Controller {
-    law: Law,
+struct Controller<'c> {
+    law: Law<'c>,
     mode: OperatingMode,
     heaters_on: bool,
     cabin_integral_w: f64,
     heater_integral_w: f64,
+    setpoint_k: f64,
 }
 
-impl Controller {
+impl Controller<'_> {
     fn set_mode(&mut self, mode: OperatingMode) {
         if mode != self.mode {
             self.mode = mode;
@@ -107,11 +108,16 @@ impl Controller {
         variant: &Variant<'_>,
         d: &Dynamics,
         segment: &Segment,
+        ambient_k: f64,
         t: &Temperatures,
     ) -> (Commands, bool) {
         let o = &segment.optimum;
-        if o.devices.radiant_heaters != self.heaters_on {
-            self.heaters_on = o.devices.radiant_heaters;
+        let heaters_on = match self.law {
+            Law::HourlyMode | Law::ComfortBand => o.devices.radiant_heaters,
+            Law::Causal(c) => c.heaters_below_c.is_some_and(|limit| celsius(ambient_k) < limit),
+        };
+        if heaters_on != self.heaters_on {
+            self.heaters_on = heaters_on;
             self.heater_integral_w = 0.0;
         }
         let setpoint_k = match self.law {
@@ -138,6 +144,37 @@ impl Controller {
                 }
                 if self.mode == OperatingMode::Cooling { high_k } else { low_k }
             }
+            Law::Causal(c) => {
+                let [heat_k, cool_k] = [&c.heating, &c.cooling].map(|curve| kelvin(curve.at(celsius(ambient_k))));
+                let ends = match self.mode {
+                    OperatingMode::Passive => true,
+                    OperatingMode::Heating => t.cabin_k > heat_k + c.hysteresis_k,
+                    OperatingMode::Cooling => t.cabin_k < cool_k - c.hysteresis_k,
+                };
+                if ends {
+                    self.set_mode(if t.cabin_k < heat_k {
+                        OperatingMode::Heating
+                    } else if t.cabin_k > cool_k {
+                        OperatingMode::Cooling
+                    } else {
+                        OperatingMode::Passive
+                    });
+                }
+                if self.mode == OperatingMode::Cooling { cool_k } else { heat_k }
+            }
+        };
+        let air_curtain_on = match self.law {
+            Law::HourlyMode | Law::ComfortBand => o.devices.air_curtain,
+            Law::Causal(c) => match (c.air_curtain, self.mode) {
+                (AirCurtain::On, _) => true,
+                (AirCurtain::Above { heating_k, .. }, OperatingMode::Heating) => t.cabin_k - ambient_k > heating_k,
+                (AirCurtain::Above { cooling_k, .. }, OperatingMode::Cooling) => ambient_k - t.cabin_k > cooling_k,
+                (AirCurtain::Off | AirCurtain::Above { .. }, _) => false,
+            },
+        };
+        let heater_setpoint_k = match self.law {
+            Law::HourlyMode | Law::ComfortBand => o.temperatures.radiant_heater_k,
+            Law::Causal(c) => c.radiant_heater_k,
         };
         let (heating_w, cooling_w) = match (variant.scenario.limits, variant.design.heating) {
             (Limits::Unlimited, _) => (f64::MAX, f64::MAX),
@@ -159,13 +196,14 @@ impl Controller {
             }
         };
         let radiant_heater_power_w = if self.heaters_on {
-            let error_k = o.temperatures.radiant_heater_k - t.radiant_heater_k;
+            let error_k = heater_setpoint_k - t.radiant_heater_k;
             let integral = &mut self.heater_integral_w;
             pi(d.heater_gain_w_k, d.heater_integral_s, error_k, integral, 0.0, d.heater_limit_w).0
         } else {
             0.0
         };
-        (Commands { air_unit_power_w, radiant_heater_power_w, air_curtain_on: o.devices.air_curtain }, held_back)
+        self.setpoint_k = setpoint_k;
+        (Commands { air_unit_power_w, radiant_heater_power_w, air_curtain_on }, held_back)
     }
 }
 
@@ -184,6 +222,7 @@ pub fn simulate_finely(
         heaters_on: false,
         cabin_integral_w: 0.0,
         heater_integral_w: 0.0,
+        setpoint_k: 0.0,
     };
     let mut now = match variant.scenario.start {
         Start::Depot => {
@@ -210,7 +249,8 @@ pub fn simulate_finely(
         }
         let cabin = mission.minutes[second as usize / 60].with_load(passengers, door_open_fraction);
         let segment = &variant.segments[(second / mission.segment_s) as usize];
-        let (commands, held_back) = controller.command(variant, dynamics, segment, &now.temperatures);
+        let (commands, held_back) =
+            controller.command(variant, dynamics, segment, cabin.ambient_k(), &now.temperatures);
         for _ in 0..steps {
             now = step(&cabin, variant.design, dynamics, &now, &commands, 1.0 / f64::from(steps));
         }
@@ -233,9 +273,13 @@ pub fn simulate_finely(
         if passengers >= 1.0 {
             max_abs = Some(max_abs.unwrap_or(0.0).max(pmv_15min.abs()));
         }
-        if segment.optimum.mode != OperatingMode::Passive {
+        let (tracked_mode, tracked_k) = match variant.law {
+            Law::HourlyMode | Law::ComfortBand => (segment.optimum.mode, segment.optimum.temperatures.cabin_k),
+            Law::Causal(_) => (controller.mode, controller.setpoint_k),
+        };
+        if tracked_mode != OperatingMode::Passive {
             tracked_s += 1;
-            square_error += (now.temperatures.cabin_k - segment.optimum.temperatures.cabin_k).powi(2);
+            square_error += (now.temperatures.cabin_k - tracked_k).powi(2);
         }
         record(&instant);
     }

@@ -100,14 +100,14 @@ const HEAD: &str = "\
 # while heating, of ambient over cabin temperature while cooling.\n\n";
 
 fn curve(profile: &Profile) -> Curve {
-    let (kind, coefficients_c, ambient_and_cabin_c) = match &profile.shape {
+    let (kind, coefficients_c, ambient_and_cabin_c) = match &profile.curve.shape {
         Shape::Quadratic(coefficients) => ("quadratic", Some(*coefficients), None),
         Shape::PiecewiseLinear(pairs) => ("piecewise-linear", None, Some(pairs.clone())),
     };
     Curve {
         kind,
-        valid_from_ambient_c: profile.valid_c[0],
-        valid_to_ambient_c: profile.valid_c[1],
+        valid_from_ambient_c: profile.curve.valid_c[0],
+        valid_to_ambient_c: profile.curve.valid_c[1],
         coverage: profile.coverage,
         hours: profile.points,
         coefficients_c,
@@ -131,12 +131,12 @@ fn heaters(threshold: Threshold) -> Heaters {
 /// The setpoints of every full degree within the validity of either profile; empty where a mode has none.
 fn table(of: &Setpoints) -> String {
     let profiles = [&of.heating, &of.cooling].map(|p| p.as_ref().ok());
-    let ends = || profiles.iter().flatten().flat_map(|p| p.valid_c);
+    let ends = || profiles.iter().flatten().flat_map(|p| p.curve.valid_c);
     let (from, to) = (ends().fold(f64::INFINITY, f64::min).floor(), ends().fold(f64::NEG_INFINITY, f64::max).ceil());
     let mut text = "ambient_temperature_c,heating_setpoint_c,cooling_setpoint_c\n".to_owned();
     let mut ambient_c = from;
     while ambient_c <= to {
-        let cell = |p: Option<&Profile>| p.map_or_else(String::new, |p| format!("{:.2}", p.at(ambient_c)));
+        let cell = |p: Option<&Profile>| p.map_or_else(String::new, |p| format!("{:.2}", p.curve.at(ambient_c)));
         let _ = writeln!(text, "{ambient_c},{},{}", cell(profiles[0]), cell(profiles[1]));
         ambient_c += 1.0;
     }

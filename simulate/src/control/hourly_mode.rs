@@ -2,7 +2,7 @@
 
 use cabin::OperatingMode;
 
-use super::Setting;
+use super::{AirCurtain, Setting};
 use crate::Segment;
 
 pub(super) fn setting(segment: &Segment) -> Setting {
@@ -19,8 +19,9 @@ pub(super) fn setting(segment: &Segment) -> Setting {
         heat_below_k,
         cool_above_k,
         stop_beyond_k: f64::INFINITY,
+        stops_idle: true,
         begins_anew: true,
         radiant_heater_k: o.devices.radiant_heaters.then_some(o.temperatures.radiant_heater_k),
-        air_curtain: o.devices.air_curtain,
+        air_curtain: AirCurtain::held(o.devices.air_curtain),
     }
 }

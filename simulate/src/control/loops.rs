@@ -5,7 +5,7 @@
 
 use cabin::{OperatingMode, Operation, Real};
 
-use super::Setting;
+use super::{AirCurtain, Setting};
 use crate::lanes::{LANES, Lanes};
 use crate::{Dynamics, PowerLimits};
 
@@ -22,12 +22,17 @@ pub(crate) struct Loops {
     start_below_k: Lanes,
     start_above_k: Lanes,
     stop_beyond_k: Lanes,
+    /// What may still be wanted where a mode ends: nothing, or anything.
+    stop_wanted_w: Lanes,
     low_w: Lanes,
     high_w: Lanes,
     integral_w: Lanes,
     heater_setpoint_k: Lanes,
     heater_high_w: Lanes,
     heater_integral_w: Lanes,
+    /// 1 where a cabin above ambient temperature is what counts for the curtains, −1 where it is one below.
+    curtain_sign: Lanes,
+    curtain_above_k: Lanes,
     /// 1 where the air curtains run, 0 elsewhere.
     pub curtain: Lanes,
 }
@@ -57,9 +62,10 @@ const OFF: Setting = Setting {
     heat_below_k: f64::NEG_INFINITY,
     cool_above_k: f64::INFINITY,
     stop_beyond_k: f64::INFINITY,
+    stops_idle: true,
     begins_anew: false,
     radiant_heater_k: None,
-    air_curtain: false,
+    air_curtain: AirCurtain::Off,
 };
 
 impl Loops {
@@ -79,12 +85,15 @@ impl Loops {
             start_below_k: Lanes::ZERO,
             start_above_k: Lanes::ZERO,
             stop_beyond_k: Lanes::ZERO,
+            stop_wanted_w: Lanes::ZERO,
             low_w: Lanes::ZERO,
             high_w: Lanes::ZERO,
             integral_w: Lanes::ZERO,
             heater_setpoint_k: Lanes::ZERO,
             heater_high_w: Lanes::ZERO,
             heater_integral_w: Lanes::ZERO,
+            curtain_sign: Lanes::ONE,
+            curtain_above_k: Lanes::ZERO,
             curtain: Lanes::ZERO,
         };
         (0..LANES).for_each(|lane| loops.refresh(lane));
@@ -123,7 +132,7 @@ impl Loops {
     pub fn want_another_mode(&self, cabin: Lanes) -> bool {
         let (zero, one) = (Lanes::ZERO, Lanes::ONE);
         let starts = self.start_below_k.above(cabin, one, cabin.above(self.start_above_k, one, zero));
-        let idle = self.wanted_w(cabin).above(zero, zero, one);
+        let idle = self.wanted_w(cabin).above(self.stop_wanted_w, zero, one);
         let beyond_k = self.sign * (cabin - self.setpoint_k);
         (starts + beyond_k.above(self.stop_beyond_k, idle, zero)).any()
     }
@@ -140,7 +149,7 @@ impl Loops {
         for lane in 0..LANES {
             let cabin_k = cabin.0[lane];
             let beyond_k = self.sign.0[lane] * (cabin_k - self.setpoint_k.0[lane]);
-            let stops = beyond_k > self.stop_beyond_k.0[lane] && wanted_w.0[lane] <= 0.0;
+            let stops = beyond_k > self.stop_beyond_k.0[lane] && wanted_w.0[lane] <= self.stop_wanted_w.0[lane];
             if stops || self.modes[lane] == OperatingMode::Passive {
                 self.choose(lane, cabin_k);
                 self.refresh(lane);
@@ -177,15 +186,29 @@ impl Loops {
         self.setpoint_k.0[lane] = setpoint_k;
         [self.start_below_k.0[lane], self.start_above_k.0[lane]] = start_k;
         self.stop_beyond_k.0[lane] = s.stop_beyond_k;
+        self.stop_wanted_w.0[lane] = if s.stops_idle { 0.0 } else { f64::INFINITY };
         [self.low_w.0[lane], self.high_w.0[lane]] = [low_w, high_w];
         self.heater_setpoint_k.0[lane] = s.radiant_heater_k.unwrap_or(0.0);
         self.heater_high_w.0[lane] = if s.radiant_heater_k.is_some() { limits.radiant_heaters_w } else { 0.0 };
-        self.curtain.0[lane] = f64::from(u8::from(s.air_curtain));
+        self.curtain_sign.0[lane] = if sign < 0.0 { -1.0 } else { 1.0 };
+        self.curtain_above_k.0[lane] = match (s.air_curtain, self.modes[lane]) {
+            (AirCurtain::On, _) => f64::NEG_INFINITY,
+            (AirCurtain::Above { heating_k, .. }, OperatingMode::Heating) => heating_k,
+            (AirCurtain::Above { cooling_k, .. }, OperatingMode::Cooling) => cooling_k,
+            (AirCurtain::Off | AirCurtain::Above { .. }, _) => f64::INFINITY,
+        };
+    }
+
+    /// Where a mode is on: its sign, and the setpoint that it follows in K.
+    pub fn followed(&self, lane: usize) -> (f64, f64) {
+        (self.sign.0[lane], self.setpoint_k.0[lane])
     }
 
     /// The commands of a second.
     #[inline(always)]
-    pub fn command(&mut self, cabin: Lanes, radiant_heater: Lanes) -> Demand {
+    pub fn command(&mut self, cabin: Lanes, radiant_heater: Lanes, ambient_k: f64) -> Demand {
+        let difference_k = self.curtain_sign * (cabin - ambient_k);
+        self.curtain = difference_k.above(self.curtain_above_k, Lanes::ONE, Lanes::ZERO);
         let [air_unit, heaters] = self.gains;
         let error_k = self.setpoint_k - cabin;
         let (air_unit_power_w, beyond_w) = air_unit.command_w(error_k, &mut self.integral_w, self.low_w, self.high_w);
@@ -207,5 +230,87 @@ impl Gain {
         let beyond_w = wanted_w - command_w;
         *integral_w = (beyond_w * error_k).above(Lanes::ZERO, *integral_w, next_w);
         (command_w, beyond_w)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Pseudo-random numbers from −1 to 1.
+    fn dice(seed: &mut u64) -> f64 {
+        *seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (*seed >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+
+    #[test]
+    fn prop_modes_switch_only_where_the_state_machine_says_and_no_faster() {
+        const FASTEST_K_S: f64 = 0.05;
+        let setting = Setting {
+            heating_k: 291.0,
+            cooling_k: 296.0,
+            heat_below_k: 291.0,
+            cool_above_k: 296.0,
+            stop_beyond_k: 1.0,
+            stops_idle: false,
+            begins_anew: false,
+            radiant_heater_k: None,
+            air_curtain: AirCurtain::Above { heating_k: 4.8, cooling_k: 4.1 },
+        };
+        let limits = PowerLimits { heating_w: 12_000.0, cooling_w: 12_000.0, radiant_heaters_w: 0.0 };
+        let mut loops = Loops::new(&Dynamics::default(), [limits; LANES]);
+        let mut cabin = Lanes([293.0; LANES]);
+        (0..LANES).for_each(|lane| loops.begin(lane, setting, cabin));
+        let (mut seed, mut switches) = (1, 0);
+        let mut since = [0_u32; LANES];
+        let mut drift = [0.0; LANES];
+        for second in 0..200_000_u32 {
+            for (cabin_k, drift) in cabin.0.iter_mut().zip(&mut drift) {
+                if dice(&mut seed) > 0.99 {
+                    *drift = FASTEST_K_S * dice(&mut seed);
+                }
+                *cabin_k = (*cabin_k + *drift).clamp(285.0, 302.0);
+            }
+            let before = *loops.modes();
+            if loops.want_another_mode(cabin) {
+                loops.choose_modes(cabin);
+            }
+            let demand = loops.command(cabin, cabin, 290.0);
+            for lane in 0..LANES {
+                let (from, to, k) = (before[lane], loops.modes()[lane], cabin.0[lane]);
+                let power_w = demand.air_unit_power_w.0[lane];
+                assert!(
+                    (0.0..=12_000.0).contains(&(power_w * loops.sign.0[lane]))
+                        && (power_w == 0.0 || loops.sign.0[lane] != 0.0)
+                );
+                let curtain = loops.curtain.0[lane] == 1.0;
+                assert_eq!(
+                    curtain,
+                    match to {
+                        OperatingMode::Heating => k - 290.0 > 4.8,
+                        OperatingMode::Cooling => 290.0 - k > 4.1,
+                        OperatingMode::Passive => false,
+                    }
+                );
+                // What must be is, whether it switched or not.
+                match to {
+                    OperatingMode::Heating => assert!(k <= 292.0 && (from == to || k < 291.0), "{from:?} {to:?} {k}"),
+                    OperatingMode::Cooling => assert!(k >= 295.0 && (from == to || k > 296.0), "{from:?} {to:?} {k}"),
+                    OperatingMode::Passive => assert!((291.0..=296.0).contains(&k), "{from:?} {k}"),
+                }
+                if from != to {
+                    switches += 1;
+                    // A kelvin takes its time.
+                    let least_s = if from == OperatingMode::Passive { 0.0 } else { 1.0 / FASTEST_K_S - 1.0 };
+                    assert!(
+                        f64::from(second - since[lane]) >= least_s,
+                        "{from:?} {to:?} after {} s",
+                        second - since[lane]
+                    );
+                    since[lane] = second;
+                }
+            }
+        }
+        assert!(switches > 1000, "{switches}");
     }
 }

@@ -1,0 +1,45 @@
+//! [`Law::Causal`](super::Law::Causal): the paper's controller (section "Case Study 2: Causal Online Control").
+
+use cabin::celsius;
+use setpoints::Curve;
+
+use super::{AirCurtain, Setting};
+
+/// A controller that knows the temperatures of now and nothing else.
+///
+/// The paper's state machine: heating begins below the heating setpoint and ends so much above it, cooling begins above the
+/// cooling setpoint and ends so much below it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CausalController {
+    /// Setpoint while heating.
+    pub heating: Curve,
+    /// Setpoint while cooling, at every ambient temperature above that of heating.
+    pub cooling: Curve,
+    /// How far beyond its setpoint the cabin is as a mode ends, in K; 1 in the paper.
+    pub hysteresis_k: f64,
+    /// When the air curtains run.
+    pub air_curtain: AirCurtain,
+    /// The radiant heaters run below this ambient temperature in °C; `None` where they never do.
+    pub heaters_below_c: Option<f64>,
+    /// Their setpoint in K.
+    pub radiant_heater_k: f64,
+}
+
+impl CausalController {
+    /// Setpoints and thresholds at an ambient temperature in K.
+    pub(super) fn setting(&self, ambient_k: f64) -> Setting {
+        let ambient_c = celsius(ambient_k);
+        let [heating_k, cooling_k] = [&self.heating, &self.cooling].map(|curve| cabin::kelvin(curve.at(ambient_c)));
+        Setting {
+            heating_k,
+            cooling_k,
+            heat_below_k: heating_k,
+            cool_above_k: cooling_k,
+            stop_beyond_k: self.hysteresis_k,
+            stops_idle: false,
+            begins_anew: false,
+            radiant_heater_k: self.heaters_below_c.filter(|limit| ambient_c < *limit).map(|_| self.radiant_heater_k),
+            air_curtain: self.air_curtain,
+        }
+    }
+}
