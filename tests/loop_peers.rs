@@ -4,11 +4,18 @@
 
 mod common;
 
-use cabin::{Vehicle, passenger_positions_m, place_passengers};
+use cabin::{Cabin, Disturbances, Heating, PassengerViews, Vehicle, kelvin, passenger_positions_m, place_passengers};
+use chrono::{DateTime, TimeDelta, Utc};
 use common::Scratch;
+use ingest::Content;
+use ingest::mission::{MissionOptions, MissionSource, read, span_of_name};
 use serde_json::{Value, json};
+use setpoints::Curve;
+use shading::{ShadowYear, Site};
+use simulate::control::{AirCurtain, CausalController, Law};
+use simulate::{Dynamics, Limits, Mission, Scenario, Segment, Start, Variant, simulate};
 use std::fmt::Write as _;
-use testing::peer;
+use testing::{design, optimum, peer};
 
 const DESIGNS: [&str; 3] = ["hp", "hp+curtain", "ptc+rh"];
 /// Kelvin that are taken off the warm day.
@@ -43,15 +50,119 @@ fn hours(scratch: &Scratch, design: &str) -> Vec<Value> {
         .collect()
 }
 
+fn number(text: &str) -> f64 {
+    text.parse().unwrap()
+}
+
+/// Mean power to 0.1 %, the 15-minute vote to 0.002, time at a limit and tracking to 0.001.
+fn assert_close(label: &str, ours: &[f64], row: &[String]) {
+    let theirs: Vec<f64> = row[1..].iter().map(|text| number(text)).collect();
+    assert_eq!(label, &row[0]);
+    assert!((ours[0] / theirs[0] - 1.0).abs() < 1e-3, "{label}: {ours:?} {theirs:?}");
+    for (n, allowed) in [(1, 0.002), (2, 1e-3), (3, 1e-3)] {
+        assert!((ours[n] - theirs[n]).abs() < allowed, "{label}: {ours:?} {theirs:?}");
+    }
+}
+
+/// The mission of the demo that is nearest to midsummer.
+fn summer_mission(scratch: &Scratch) -> String {
+    let month = |name: &String| name[10..12].parse::<i32>().unwrap();
+    scratch.missions().into_iter().min_by_key(|name| (month(name) - 7).abs()).unwrap()
+}
+
+/// The cabin in the middle of every minute, without load.
+fn minutes<'v>(scratch: &Scratch, name: &str, text: &str, views: &'v PassengerViews, hours: usize) -> Vec<Cabin<'v>> {
+    let rows: Vec<Vec<&str>> = text.lines().skip(1).map(|line| line.split(',').collect()).collect();
+    let middle = |row: &[&str]| row[0].parse::<DateTime<Utc>>().unwrap() + TimeDelta::minutes(30);
+    let (site, vehicle) = (Site::new(47.3779, 8.5657).unwrap(), Vehicle::default());
+    let shadow = ShadowYear::read(scratch.read("shadow.csv").as_bytes()).unwrap();
+    let start = span_of_name(name.trim_end_matches(".csv")).unwrap().1;
+    let minute = |n: usize| {
+        let at = start + TimeDelta::seconds(60 * n as i64 + 30);
+        let after = rows.iter().position(|row| middle(row) > at).unwrap();
+        let share = (at - middle(&rows[after - 1])).as_seconds_f64() / 3600.0;
+        let value = |column: usize| {
+            let [a, b] = [after - 1, after].map(|row| rows[row][column].parse::<f64>().unwrap());
+            a + share * (b - a)
+        };
+        let disturbances = Disturbances {
+            ambient_temperature_k: kelvin(value(1)),
+            dni_w_m2: value(2),
+            dhi_w_m2: value(3),
+            solar_altitude_rad: site.sun(at).altitude_rad,
+            shadow_fraction: shadow.at(at),
+            passengers: 0.0,
+            door_open_fraction: 0.0,
+        };
+        Cabin::new(&vehicle, views, &disturbances)
+    };
+    (0..60 * hours).map(minute).collect()
+}
+
+#[test]
+fn xval_numpy_a_causal_controller_in_closed_loop_comes_out_the_same() {
+    let scratch = Scratch::demo(4);
+    let name = summer_mission(&scratch);
+    let path = scratch.path(&format!("ztbus/{name}"));
+    let options = MissionOptions { segment_s: 3600, door_open_share: 0.6, keep_partial: false };
+    let reading = read(&MissionSource::at(&path).unwrap(), &Content::read(&path).unwrap(), &options);
+    let hours = reading.segments.len();
+    let heating = [(-10.0, 17.0), (10.0, 18.5), (25.0, 21.0)];
+    let cooling = [(10.0, 23.0), (35.0, 26.0)];
+    let controller = CausalController {
+        heating: Curve::through(&heating).unwrap(),
+        cooling: Curve::through(&cooling).unwrap(),
+        hysteresis_k: 1.0,
+        air_curtain: AirCurtain::Above { heating_k: 4.8, cooling_k: 4.1 },
+        heaters_below_c: Some(8.0),
+        radiant_heater_k: 343.15,
+    };
+    let (vehicle, design) = (Vehicle::default(), design("all", Heating::HeatPump, true, true));
+    let views = PassengerViews::new(&vehicle);
+    // What optima there are does not matter to it.
+    let optimum = optimum(&vehicle, &views, &design, &testing::winter_day(), 1.0);
+    let segments = vec![Segment { optimum, band_k: [290.0, 295.0] }; hours];
+    let scenario = Scenario { start: Start::Depot, limits: Limits::Rated };
+    let variant = Variant { design: &design, scenario, law: Law::Causal(&controller), segments: &segments };
+    let (mut cases, mut ours) = (Vec::new(), Vec::new());
+    for colder_k in COLDER_K {
+        let (label, text) = (format!("causal {colder_k} K colder"), weather(name[5..15].parse().unwrap(), colder_k));
+        let file = format!("weather-{colder_k}.csv");
+        scratch.write(&file, &text);
+        let minutes = minutes(&scratch, &name, &text, &views, hours);
+        let mission = Mission {
+            loads: &reading.loads,
+            minutes: &minutes,
+            segments: hours,
+            segment_s: 3600,
+            door_open_share: 0.6,
+        };
+        let s = simulate(&mission, &Dynamics::default(), &[variant]).unwrap()[0];
+        let votes = s.max_abs_pmv_15min.unwrap();
+        ours.push((label.clone(), [s.mean_hvac_power_w, votes, s.saturated_fraction, s.tracking_error_k]));
+        let causal = json!({
+            "heating": heating, "cooling": cooling, "curtain_above_k": [4.8, 4.1], "heaters_below_c": 8.0
+        });
+        cases.push(json!({"name": label, "heat_pump": true, "weather": scratch.path(&file), "causal": causal}));
+    }
+    let given = json!({
+        "mission": path, "shadow": scratch.path("shadow.csv"), "place": [47.3779, 8.5657],
+        "positions": passenger_positions_m(&vehicle), "hours": hours, "cases": cases,
+    });
+    scratch.write("cases.json", given.to_string());
+    let Some(rows) = peer("mission.py", "numpy", &[scratch.path("cases.json").to_string_lossy().into_owned()]) else {
+        return;
+    };
+    assert_eq!(rows.len(), 3);
+    for ((label, ours), row) in ours.iter().zip(&rows[1..]) {
+        assert_close(label, ours, row);
+    }
+}
+
 #[test]
 fn xval_numpy_a_mission_in_closed_loop_comes_out_the_same() {
     let scratch = Scratch::small(4, "[0.5]", "[0.5]");
-    // The mission nearest to midsummer.
-    let name = scratch.missions().into_iter().min_by_key(|name| {
-        let month: i32 = name[10..12].parse().unwrap();
-        (month - 7).abs()
-    });
-    let name = name.unwrap();
+    let name = summer_mission(&scratch);
     scratch.edit("study.toml", "path = \"ztbus\"", &format!("path = \"ztbus/{name}\""));
     scratch.edit("study.toml", "path = \"weather\"", "path = \"weather.csv\"\ntime_column = \"interval_start_utc\"\n\
         time_label = \"start\"\ninterval_s = 3600\ntemperature_column = \"T_degC\"\ndni_column = \"DNI_Wm2\"\ndhi_column = \"DHI_Wm2\"");
@@ -83,13 +194,13 @@ fn xval_numpy_a_mission_in_closed_loop_comes_out_the_same() {
         "shadow": scratch.path("shadow.csv"),
         "place": [47.3779, 8.5657],
         "positions": passenger_positions_m(&vehicle),
+        "hours": cases[0]["hours"].as_array().unwrap().len(),
         "cases": cases,
     });
     scratch.write("cases.json", given.to_string());
     let Some(rows) = peer("mission.py", "numpy", &[scratch.path("cases.json").to_string_lossy().into_owned()]) else {
         return;
     };
-    let number = |text: &String| text.parse::<f64>().unwrap();
     let views = place_passengers(&vehicle);
     let least = views.iter().copied().fold(f64::MAX, f64::min);
     assert!((number(&rows[0][1]) - least).abs() < 1e-6, "{rows:?} {least}");
@@ -97,13 +208,7 @@ fn xval_numpy_a_mission_in_closed_loop_comes_out_the_same() {
     assert_eq!(rows.len(), ours.len() + 1);
     let (mut saturates, mut modes) = (false, std::collections::BTreeSet::new());
     for ((label, ours), row) in ours.iter().zip(&rows[1..]) {
-        let theirs: Vec<f64> = row[1..].iter().map(number).collect();
-        println!("{label}: {ours:?} {theirs:?}");
-        assert_eq!(label, &row[0]);
-        assert!((ours[0] / theirs[0] - 1.0).abs() < 1e-3, "{label}: {ours:?} {theirs:?}");
-        assert!((ours[1] - theirs[1]).abs() < 0.002, "{label}: {ours:?} {theirs:?}");
-        assert!((ours[2] - theirs[2]).abs() < 1e-3, "{label}: {ours:?} {theirs:?}");
-        assert!((ours[3] - theirs[3]).abs() < 1e-3, "{label}: {ours:?} {theirs:?}");
+        assert_close(label, ours, row);
         saturates |= ours[2] > 0.0;
     }
     for case in given["cases"].as_array().unwrap() {

@@ -3,8 +3,9 @@
     mission.py CASES.json
 
 The cases name a mission (ZTBus), a weather file (hours from interval_start_utc: T_degC, DNI_Wm2, DHI_Wm2), a shadow file, the place, where
-passengers stand, and for each case the design and what the optimum of each hour prescribes. Printed is a line for each case: mean power in
-W, largest 15-minute vote, share of the time at a power limit, tracking error in K.
+passengers stand, and for each case the design and what the optimum of each hour prescribes, or a causal controller with its setpoints over
+the ambient temperature. Printed is a line for each case: mean power in W, largest 15-minute vote, share of the time at a power limit,
+tracking error in K.
 
 Nothing is shared with the program: view factors are double integrals over both areas, the sun is that of the Almanac, every passenger has
 a vote of his own, in double precision by numpy. What the paper does not say is what the program's documents say: controllers are asked once
@@ -18,6 +19,7 @@ from datetime import datetime, timedelta, timezone
 
 import numpy as np
 from almanac import sun, utc
+from ztbus import telemetry
 
 SIGMA, A_S, A_INT, A_RH = 5.67e-8, 199.5, 20.0, 4.0
 H_IN, H_OUT, H_RH, K = 8.01, 20.67, 2.1, 6.86
@@ -65,19 +67,6 @@ def view_factors(positions, points=6):
                 total += integral(low, 0.25 * e[0], 1.7 * e[2], -e[1], ((x0, x1), (y0, min(y1, y - 0.125))))
         views.append(total / (4 * side + top))
     return np.array(views)
-
-
-def telemetry(path):
-    """Passengers and open doors of every second; a missing value is the one before."""
-    seconds, passengers, door = [], 0.0, 0.0
-    with open(path, encoding="utf-8", newline="") as f:
-        for row in csv.DictReader(f):
-            if row["itcs_numberOfPassengers"] != "NaN":
-                passengers = float(row["itcs_numberOfPassengers"])
-            if row["status_doorIsOpen"] != "NaN":
-                door = float(row["status_doorIsOpen"])
-            seconds.append((passengers, door))
-    return seconds
 
 
 class Surroundings:
@@ -149,32 +138,60 @@ def pi(gain, integral_s, error, integral, low, high):
     return command, following if (wanted - command) * error <= 0 else integral, wanted - command
 
 
+class Hourly:
+    """What the optima of the hours prescribe."""
+
+    def __init__(self, hours):
+        self.hours = hours
+
+    def decide(self, second, mode, cabin, ambient):
+        """Mode, setpoint, whether heaters and curtains run."""
+        hour = self.hours[second // 3600]
+        return hour["mode"], hour["cabin_k"], hour["heaters"], hour["curtain"]
+
+
+class Causal:
+    """The paper's state machine on setpoints over the ambient temperature."""
+
+    def __init__(self, given):
+        self.curves = [np.array(given[mode]) for mode in ("heating", "cooling")]
+        self.above, self.below = given["curtain_above_k"], given["heaters_below_c"]
+
+    def decide(self, second, mode, cabin, ambient):
+        heat, cool = (np.interp(ambient - 273.15, curve[:, 0], curve[:, 1]) + 273.15 for curve in self.curves)
+        if mode == 0 or (mode > 0 and cabin > heat + 1) or (mode < 0 and cabin < cool - 1):
+            mode = 1 if cabin < heat else -1 if cabin > cool else 0
+        curtain = mode != 0 and mode * (cabin - ambient) > self.above[0 if mode > 0 else 1]
+        return mode, cool if mode < 0 else heat, ambient - 273.15 < self.below, curtain
+
+
 def simulate(case, seconds, minutes, views):
-    heat_pump, hours = case["heat_pump"], case["hours"]
+    heat_pump = case["heat_pump"]
+    law = Causal(case["causal"]) if "causal" in case else Hourly(case["hours"])
     depot = 0.5 * (minutes[0][0] - 293.15) + 293.15
     # Heaters, interior, cabin, inside and outside of the shell; heat of the machine.
     x = np.array([depot] * 5 + [0.0])
     people = Passengers(views)
     mode, heaters_on, integral, heater_integral = 0, False, 0.0, 0.0
     votes, energy, held, tracked, largest = [], 0.0, 0, [], 0.0
-    for second in range(3600 * len(hours)):
-        hour, (passengers, door) = hours[second // 3600], seconds[second]
-        ambient, solar = minutes[second // 60]
+    for second in range(60 * len(minutes)):
+        (passengers, door), (ambient, solar) = seconds[second], minutes[second // 60]
         doors = 0.6 * door
-        if hour["mode"] != mode:
-            mode, integral = hour["mode"], 0.0
-        if hour["heaters"] != heaters_on:
-            heaters_on, heater_integral = hour["heaters"], 0.0
+        new_mode, setpoint, new_heaters, curtain = law.decide(second, mode, x[2], ambient)
+        if new_mode != mode:
+            mode, integral = new_mode, 0.0
+        if new_heaters != heaters_on:
+            heaters_on, heater_integral = new_heaters, 0.0
         power = 0.0
         if mode != 0:
             low, high = (0.0, HEAT_PUMP_LIMIT if heat_pump else PTC_LIMIT) if mode > 0 else (-COOLING_LIMIT, 0.0)
-            power, integral, beyond = pi(2000.0, 100.0, hour["cabin_k"] - x[2], integral, low, high)
+            power, integral, beyond = pi(2000.0, 100.0, setpoint - x[2], integral, low, high)
             held += mode * beyond > 0
         heater_power = 0.0
         if heaters_on:
             heater_power, heater_integral, _ = pi(100.0, 100.0, 343.15 - x[0], heater_integral, 0.0, HEATER_LIMIT)
         exchange = RHO * CP * CD * np.sqrt(G * DOOR_H**3) * DOOR_W / 3 / np.sqrt(ambient) * doors
-        exchange *= 0.4 if hour["curtain"] else 1.0
+        exchange *= 0.4 if curtain else 1.0
 
         def slopes(x):
             heater, interior, cabin, inside, outside, machine = x
@@ -208,13 +225,13 @@ def simulate(case, seconds, minutes, views):
             return x + h / 2 * (first + slopes(x + h * first))
 
         x = (4 * heun(heun(x, 0.5), 0.5) - heun(x, 1.0)) / 3
-        energy += abs(power) + heater_power + (1020.0 * doors if hour["curtain"] else 0.0)
+        energy += abs(power) + heater_power + (1020.0 * doors if curtain else 0.0)
         votes.append(people.vote(x[:5], ambient))
         if passengers >= 1:
             last = votes[-900:]
             largest = max(largest, abs(sum(last) / len(last)))
         if mode != 0:
-            tracked.append(x[2] - hour["cabin_k"])
+            tracked.append(x[2] - setpoint)
     rms = float(np.sqrt(np.mean(np.square(tracked)))) if tracked else 0.0
     return energy / len(votes), largest, held / len(votes), rms
 
@@ -232,7 +249,7 @@ def main():
     for case in given["cases"]:
         if case["weather"] not in minutes:
             around = Surroundings(case["weather"], given["shadow"], given["place"])
-            middles = (start + timedelta(seconds=60 * m + 30) for m in range(60 * len(case["hours"])))
+            middles = (start + timedelta(seconds=60 * m + 30) for m in range(60 * given["hours"]))
             minutes[case["weather"]] = [around.at(middle) for middle in middles]
         out.writerow([case["name"]] + [repr(float(v)) for v in simulate(case, seconds, minutes[case["weather"]], views)])
 

@@ -12,6 +12,7 @@ import sys
 from datetime import datetime, timedelta, timezone
 
 from almanac import sun, utc
+from ztbus import telemetry
 
 
 def erbs(ghi, altitude, day):
@@ -42,15 +43,7 @@ def main():
     with open(shadow_file, encoding="utf-8") as f:
         shadow = {utc(r["time_utc"]).strftime("%m-%d %H"): float(r["shadow_fraction"]) for r in csv.DictReader(f)}
 
-    seconds = []
-    passengers, door = 0.0, 0.0
-    with open(mission, encoding="utf-8", newline="") as f:
-        for row in csv.DictReader(f):
-            if row["itcs_numberOfPassengers"] != "NaN":
-                passengers = float(row["itcs_numberOfPassengers"])
-            if row["status_doorIsOpen"] != "NaN":
-                door = float(row["status_doorIsOpen"])
-            seconds.append((passengers, door))
+    seconds = telemetry(mission)
     name = mission.replace("\\", "/").split("/")[-1]
     start = datetime.strptime(name[5:24], "%Y-%m-%d_%H-%M-%S").replace(tzinfo=timezone.utc)
 
