@@ -75,7 +75,7 @@ pub fn setpoints(folder: &Path, found: &[Setpoints]) -> Result<Ending, Failure> 
             say(format_args!("{range}: radiant heaters below {:.1} °C, wrong in {wrong:.1} % of the hours", t.value))?;
         }
     }
-    say(format_args!("{} files in {}", 2 * found.len(), folder.display()))?;
+    say(format_args!("{} files in {}, and published.csv", 2 * found.len(), folder.display()))?;
     Ok(Ending::Done)
 }
 

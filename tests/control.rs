@@ -62,6 +62,8 @@ fn cli_profiles_cover_the_hours_that_they_claim() {
     assert!(setpoints.len() > 10 && setpoints.is_sorted(), "{setpoints:?}");
     assert!(file(&scratch, "hp_pmv_-1_1.toml").get("air_curtain").is_none());
     assert!(file(&scratch, "ptc+rh_pmv_-1_1.toml").get("radiant_heaters").is_some());
+    let published = scratch.read("setpoints/published.csv");
+    assert!(published.contains("\nvbz-18,-16,13.50,,\"VBZ"), "{published}");
     // The same bytes again.
     let before = scratch.read("setpoints/hp_pmv_-1_1.toml");
     scratch.expect(0, &["control", "--coverage", "0.9", "--threads", "1"]);

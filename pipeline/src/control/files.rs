@@ -2,7 +2,7 @@
 
 use cabin::OperatingMode;
 use serde::Serialize;
-use setpoints::{Profile, Shape, Threshold};
+use setpoints::{Profile, Shape, Threshold, published};
 use std::fmt::Write as _;
 use std::path::Path;
 use study::Study;
@@ -89,7 +89,24 @@ pub(super) fn write(
         write_whole(&folder.join(format!("{name}.toml")), format!("{HEAD}{text}").as_bytes())?;
         write_whole(&folder.join(format!("{name}.csv")), table(of).as_bytes())?;
     }
-    Ok(())
+    write_whole(&folder.join(PUBLISHED), published_table().as_bytes())
+}
+
+/// The file of what others have published.
+const PUBLISHED: &str = "published.csv";
+
+/// Published setpoints from −25 to 40 °C; that of cooling is empty below where its source begins.
+fn published_table() -> String {
+    let mut text = "profile,ambient_temperature_c,heating_setpoint_c,cooling_setpoint_c,source\n".to_owned();
+    for of in published() {
+        for ambient_c in (-25..=40).map(f64::from) {
+            let cools = of.heating == of.cooling || ambient_c >= of.cooling.valid_c[0];
+            let cooling = if cools { format!("{:.2}", of.cooling.at(ambient_c)) } else { String::new() };
+            let heating_c = of.heating.at(ambient_c);
+            let _ = writeln!(text, "{},{ambient_c},{heating_c:.2},{cooling},\"{}\"", of.name, of.source);
+        }
+    }
+    text
 }
 
 const HEAD: &str = "\
