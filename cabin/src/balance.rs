@@ -68,12 +68,7 @@ impl<'a> Cabin<'a> {
         let v = vehicle;
         let sigma = v.stefan_boltzmann_w_m2_k4;
         let ambient_k = disturbances.ambient_temperature_k;
-        let air_w_k = v.air_density_kg_m3 * v.air_heat_capacity_j_kg_k;
-        let exchange = v.door_discharge_coefficient
-            * (v.gravity_m_s2 * v.door_height_m * v.door_height_m * v.door_height_m).sqrt()
-            * v.door_width_m
-            / 3.0;
-        let door_all_open = air_w_k * exchange / ambient_k.sqrt();
+        let door_all_open = v.door_loss_w_k15(ambient_k);
         let clothing = clothing_insulation_clo(ambient_k, v.clothing_floor_clo);
         let pmv = PmvModel::new(clothing, v.metabolic_rate_met, v.relative_humidity, v.air_velocity_m_s);
         Self {

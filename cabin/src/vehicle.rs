@@ -165,6 +165,18 @@ pub struct VehicleError {
 }
 
 impl Vehicle {
+    /// What goes out through all doors open, without curtain, in W per K^1.5 of the temperature difference, at an ambient
+    /// temperature in K (paper, eq. `qdoor`).
+    #[must_use]
+    pub fn door_loss_w_k15(&self, ambient_k: f64) -> f64 {
+        let air_w_k = self.air_density_kg_m3 * self.air_heat_capacity_j_kg_k;
+        let exchange = self.door_discharge_coefficient
+            * (self.gravity_m_s2 * self.door_height_m * self.door_height_m * self.door_height_m).sqrt()
+            * self.door_width_m
+            / 3.0;
+        air_w_k * exchange / ambient_k.sqrt()
+    }
+
     /// Checks every constant against the range in which the model has a meaning.
     ///
     /// # Errors

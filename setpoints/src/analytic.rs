@@ -7,15 +7,9 @@ use cabin::{Cop, Vehicle};
 /// its own power. `cop` is that of the mode, over the lift. `None` where it never pays below 100 K.
 #[must_use]
 pub fn curtain_threshold_k(vehicle: &Vehicle, cop: &Cop, ambient_k: f64) -> Option<f64> {
-    let v = vehicle;
-    let exchange = v.door_discharge_coefficient
-        * (v.gravity_m_s2 * v.door_height_m * v.door_height_m * v.door_height_m).sqrt()
-        * v.door_width_m
-        / 3.0;
-    let loss_w = v.air_density_kg_m3 * v.air_heat_capacity_j_kg_k * exchange / ambient_k.sqrt();
-    let gain_w = |difference_k: f64| {
-        v.air_curtain_loss_reduction * loss_w * difference_k.powf(1.5) / cop.at(difference_k) - v.air_curtain_power_w
-    };
+    let saved_w_k15 = vehicle.air_curtain_loss_reduction * vehicle.door_loss_w_k15(ambient_k);
+    let gain_w =
+        |difference_k: f64| saved_w_k15 * difference_k.powf(1.5) / cop.at(difference_k) - vehicle.air_curtain_power_w;
     let (mut low_k, mut high_k) = (0.0, 100.0);
     if gain_w(high_k) < 0.0 {
         return None;
