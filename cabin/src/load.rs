@@ -11,3 +11,14 @@ pub struct LoadChange {
     /// telemetry says a share of the doors.
     pub door_open: f64,
 }
+
+impl LoadChange {
+    /// Steps in which doors between shut and open are told apart: half a percent.
+    pub const DOOR_STEPS: f64 = 200.0;
+
+    /// A share of the doors, to the nearest step.
+    #[must_use]
+    pub fn in_steps(share: f64) -> f64 {
+        (share * Self::DOOR_STEPS).round() / Self::DOOR_STEPS
+    }
+}

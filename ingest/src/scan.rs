@@ -6,6 +6,8 @@
 
 use wide::u8x16;
 
+use crate::{Finding, FindingKind};
+
 const BLOCK: usize = 64;
 /// Separators that are looked for at a time.
 const BATCH: usize = 4096;
@@ -80,8 +82,24 @@ impl<'b, const N: usize> Scanner<'b, N> {
         scanner
     }
 
-    /// The line of a quote that never closes or stands where none can, once the records are through.
-    pub fn bad_quote(&self) -> Option<u64> {
+    /// Whether all is well, once so many records are through.
+    ///
+    /// # Errors
+    /// Quotes that never close or stand where none can; no record at all.
+    pub fn check(&self, records: u64) -> Result<(), Finding> {
+        if let Some(line) = self.bad_quote() {
+            let message =
+                "a quote never closes, or stands in a field that does not begin with one; export the file again";
+            return Err(Finding::whole(FindingKind::Unreadable, message).at_line(line));
+        }
+        if records == 0 {
+            return Err(Finding::whole(FindingKind::Empty, "there are no rows below the header").at_line(2));
+        }
+        Ok(())
+    }
+
+    /// The line of a quote that never closes or stands where none can.
+    fn bad_quote(&self) -> Option<u64> {
         let (Quotes::Open(at) | Quotes::Odd(at)) = self.quotes else { return None };
         Some(1 + memchr::memchr_iter(b'\n', &self.bytes[..at]).count() as u64)
     }

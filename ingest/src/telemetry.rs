@@ -135,14 +135,7 @@ impl<'b> Telemetry<'b> {
                 route: if matches!(route, b"-" | b"NaN") { b"" } else { route },
             });
         }
-        if let Some(line) = scanner.bad_quote() {
-            let message =
-                "a quote never closes, or stands in a field that does not begin with one; export the file again";
-            return Err(Finding::whole(FindingKind::Unreadable, message).at_line(line));
-        }
-        if count == 0 {
-            return Err(Finding::whole(FindingKind::Empty, "there are no rows below the header").at_line(2));
-        }
+        scanner.check(count)?;
         Ok(count)
     }
 }

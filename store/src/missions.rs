@@ -136,8 +136,6 @@ pub(crate) fn segment(r: &SqliteRow) -> Result<Segment, sqlx::Error> {
     })
 }
 
-/// Steps of a door between shut and open.
-const DOOR_STEPS: f64 = 200.0;
 /// Bytes of a load change.
 const LOAD_BYTES: usize = 13;
 
@@ -146,11 +144,11 @@ fn encode_loads(loads: &[LoadChange]) -> Vec<u8> {
     for load in loads {
         bytes.extend(load.second.to_le_bytes());
         bytes.extend(load.passengers.to_le_bytes());
-        // Shut, open, or between by half a percent.
+        // Shut, open, or between in steps.
         bytes.push(match load.door_open {
             0.0 => 0,
             1.0 => 1,
-            between => 2 + (between * DOOR_STEPS).round() as u8,
+            between => 2 + (between * LoadChange::DOOR_STEPS).round() as u8,
         });
     }
     bytes
@@ -164,7 +162,7 @@ fn decode_load(bytes: &[u8]) -> LoadChange {
         passengers: f64::from_le_bytes(passengers),
         door_open: match bytes[12] {
             byte @ (0 | 1) => f64::from(byte),
-            byte => f64::from(byte - 2) / DOOR_STEPS,
+            byte => f64::from(byte - 2) / LoadChange::DOOR_STEPS,
         },
     }
 }

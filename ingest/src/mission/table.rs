@@ -1,5 +1,6 @@
 //! Missions in tables of any operator: columns named by the study, one vehicle and day a file or many in one, cut at gaps.
 
+use cabin::LoadChange;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
@@ -18,8 +19,6 @@ const MOST_ROWS: usize = 8_000_000;
 const LONGEST_S: i64 = 7 * 86_400;
 /// Share of unreadable stamps and vehicles above which a file is refused.
 const MAX_UNUSABLE_SHARE: f64 = 0.1;
-/// Steps in which a share of the doors is kept.
-const DOOR_STEPS: f64 = 200.0;
 
 /// Which column of a table of telemetry is what.
 #[derive(Debug, Clone, PartialEq)]
@@ -199,10 +198,7 @@ pub(super) fn index(bytes: &[u8], map: &Arc<TelemetryMap>) -> Result<Index, Find
         part.span.1 = part.span.1.max(second);
         part.pieces[1].end = mark + record.end;
     }
-    if let Some(line) = scanner.bad_quote() {
-        let message = "a quote never closes, or stands in a field that does not begin with one; export the file again";
-        return Err(Finding::whole(FindingKind::Unreadable, message).at_line(line));
-    }
+    scanner.check(rows)?;
     parts.extend(open.into_values());
     let note = first.map(|(line, is_time, text)| {
         let text: String = text.chars().take(40).collect();
@@ -214,7 +210,6 @@ pub(super) fn index(bytes: &[u8], map: &Arc<TelemetryMap>) -> Result<Index, Find
         Finding::whole(FindingKind::RefusedRow, message).in_column(column).at_line(line).times(unusable)
     });
     match note {
-        _ if rows == 0 => Err(Finding::whole(FindingKind::Empty, "there are no rows below the header").at_line(2)),
         Some(note) if parts.is_empty() || unusable as f64 > MAX_UNUSABLE_SHARE * rows as f64 => Err(note),
         note => Ok(Index { parts, note }),
     }
@@ -254,7 +249,7 @@ impl Part {
                 passengers: passengers.number(on_board),
                 door: match &self.map.door {
                     Door::Flag(_) => text(doors).and_then(parse::flag),
-                    Door::Share(_) => door.number(doors).map(|share| (share * DOOR_STEPS).round() / DOOR_STEPS),
+                    Door::Share(_) => door.number(doors).map(LoadChange::in_steps),
                 },
                 ambient_k: Some(f64::NAN),
                 speed_m_s: speed.number(speed_field).map(|speed| speed * self.map.speed_unit_m_s),
