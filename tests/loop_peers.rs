@@ -112,6 +112,8 @@ fn xval_numpy_a_causal_controller_in_closed_loop_comes_out_the_same() {
     let controller = CausalController {
         heating: Curve::through(&heating).unwrap(),
         cooling: Curve::through(&cooling).unwrap(),
+        dead_band_k: 0.0,
+        cools_above_c: f64::NEG_INFINITY,
         hysteresis_k: 1.0,
         air_curtain: AirCurtain::Above { heating_k: 4.8, cooling_k: 4.1 },
         heaters_below_c: Some(8.0),
@@ -123,7 +125,8 @@ fn xval_numpy_a_causal_controller_in_closed_loop_comes_out_the_same() {
     let optimum = optimum(&vehicle, &views, &design, &testing::winter_day(), 1.0);
     let segments = vec![Segment { optimum, band_k: [290.0, 295.0] }; hours];
     let scenario = Scenario { start: Start::Depot, limits: Limits::Rated };
-    let variant = Variant { design: &design, scenario, law: Law::Causal(&controller), segments: &segments };
+    let variant =
+        Variant { design: &design, scenario, law: Law::Causal(&controller), segments: &segments, windows: &[] };
     let (mut cases, mut ours) = (Vec::new(), Vec::new());
     for colder_k in COLDER_K {
         let (label, text) = (format!("causal {colder_k} K colder"), weather(name[5..15].parse().unwrap(), colder_k));
@@ -137,7 +140,7 @@ fn xval_numpy_a_causal_controller_in_closed_loop_comes_out_the_same() {
             segment_s: 3600,
             door_open_share: 0.6,
         };
-        let s = simulate(&mission, &Dynamics::default(), &[variant]).unwrap()[0];
+        let s = simulate(&mission, &Dynamics::default(), &[variant]).unwrap().remove(0);
         let votes = s.max_abs_pmv_15min.unwrap();
         ours.push((label.clone(), [s.mean_hvac_power_w, votes, s.saturated_fraction, s.tracking_error_k]));
         let causal = json!({

@@ -197,7 +197,7 @@ impl SimulationBasis<'_> {
         };
         let mut of_points = summaries.chunks(Replay::ALL.len());
         let mut replays = |segments: &Result<Vec<Segment>, String>| match segments {
-            Ok(_) => Ok(Replay::ALL.into_iter().zip(of_points.next().unwrap_or_default().iter().copied()).collect()),
+            Ok(_) => Ok(Replay::ALL.into_iter().zip(of_points.next().unwrap_or_default().iter().cloned()).collect()),
             Err(reason) => Err(reason.clone()),
         };
         segments.iter().map(&mut replays).collect()

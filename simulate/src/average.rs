@@ -58,19 +58,19 @@ impl TrailingVotes {
     }
 
     /// Takes the votes of [`VOTE_S`] seconds, or of fewer at the very end, and gives their trailing means; `on_board` says of each
-    /// second whether a passenger is.
+    /// second how many passengers are.
     #[inline(always)]
-    pub fn push(&mut self, votes: &Votes, on_board: &[bool]) -> Votes {
+    pub fn push(&mut self, votes: &Votes, on_board: &[f64]) -> Votes {
         let mut means = *votes;
         let is_full = self.seconds >= WINDOW_S;
         let oldest = if is_full { self.nodes[self.next] } else { Lanes::ZERO };
         let before = if is_full { self.before } else { Lanes::ZERO };
-        for (j, is_on_board) in on_board.iter().enumerate() {
+        for (j, passengers) in on_board.iter().enumerate() {
             let share = (j + 1) as f64 / VOTE_S as f64;
             self.sum = self.sum + (votes[j] - (before + (oldest - before) * share));
             let seconds = (self.seconds + j + 1).min(WINDOW_S);
             means[j] = self.sum * (1.0 / seconds as f64);
-            if *is_on_board {
+            if *passengers >= 1.0 {
                 self.any_on_board = true;
                 self.max_abs = self.max_abs.max(means[j].abs());
             }
@@ -124,7 +124,8 @@ mod tests {
         let mut largest: f64 = 0.0;
         for block in 0..2000 {
             let end = (block + 1) * VOTE_S;
-            let on_board: [bool; VOTE_S] = std::array::from_fn(|j| (block * VOTE_S + j).is_multiple_of(7));
+            let on_board: [f64; VOTE_S] =
+                std::array::from_fn(|j| if (block * VOTE_S + j).is_multiple_of(7) { 3.0 } else { 0.0 });
             let votes = trailing.up_to(Lanes::splat(vote(end)), VOTE_S);
             let means = trailing.push(&votes, &on_board);
             for j in 0..VOTE_S {
@@ -133,7 +134,7 @@ mod tests {
                 let mean = window.clone().map(taken).sum::<f64>() / window.count() as f64;
                 assert!((means[j].0[3] - mean).abs() < 1e-9, "{second}: {} {mean}", means[j].0[3]);
                 assert!((votes[j].0[5] - taken(second)).abs() < 1e-12);
-                if on_board[j] {
+                if on_board[j] > 0.0 {
                     largest = largest.max(mean.abs());
                 }
             }

@@ -8,6 +8,7 @@ use pulp::{Arch, Simd, WithSimd};
 
 use crate::average::{FIRST_S, TrailingVotes, VOTE_S, Votes};
 use crate::control::{Demand, Loops};
+use crate::judge::Judge;
 use crate::lanes::{LANES, Lanes};
 use crate::model::{AirUnits, Rates, Second, Vector, temperatures};
 use crate::summary::Sums;
@@ -57,7 +58,7 @@ fn abreast(
         });
         let of_lane = of_lane.as_mut().map(|record| record as &mut Record<'_>);
         let all = Arch::new().dispatch(Run { drive: Drive::new(mission, dynamics, lanes), record: of_lane });
-        summaries.extend_from_slice(&all[..some.len()]);
+        summaries.extend(all.into_iter().take(some.len()));
     }
     Some(summaries)
 }
@@ -98,6 +99,8 @@ struct Past {
     demand: Demand,
     air_curtain_power_w: Lanes,
     curtain: Lanes,
+    /// Sign of the mode, and setpoint in K.
+    followed: (Lanes, Lanes),
     passengers: f64,
     door_open_fraction: f64,
 }
@@ -132,6 +135,7 @@ impl<'a, 'm, 'v> Drive<'a, 'm, 'v> {
         let mut clothes = mission.minutes[0].clothes(&temperatures(&self.x));
         let first = mission.minutes[0].step_vote(&temperatures(&self.x), &mut clothes);
         let mut trailing = TrailingVotes::new(first);
+        let mut judge = Judge::new(&self.variants);
         let mut loads = mission.loads.iter().peekable();
         let (mut passengers, mut door_open_fraction) = (0.0, 0.0);
         let seconds = mission.segments as u32 * mission.segment_s;
@@ -142,7 +146,7 @@ impl<'a, 'm, 'v> Drive<'a, 'm, 'v> {
                 self.begin_minute(from_s, &cabin);
             }
             let length = VOTE_S.min((seconds - from_s) as usize);
-            let mut on_board = [false; VOTE_S];
+            let mut on_board = [0.0; VOTE_S];
             let mut past = [None; VOTE_S];
             let mut votes = [Lanes::ZERO; VOTE_S];
             for (j, (on_board, past)) in on_board.iter_mut().zip(&mut past).enumerate().take(length) {
@@ -151,7 +155,7 @@ impl<'a, 'm, 'v> Drive<'a, 'm, 'v> {
                     door_open_fraction = load.door_open * mission.door_open_share;
                     cabin = cabin.with_load(passengers, door_open_fraction);
                 }
-                *on_board = passengers >= 1.0;
+                *on_board = passengers;
                 let demand = self.second(&cabin);
                 if from_s < FIRST_S {
                     votes[j] = cabin.step_vote(&temperatures(&self.x), &mut clothes);
@@ -159,7 +163,16 @@ impl<'a, 'm, 'v> Drive<'a, 'm, 'v> {
                 if record.is_some() {
                     let (x, curtain) = (self.x, self.loops.curtain);
                     let air_curtain_power_w = curtain * cabin.air_curtain_power_w();
-                    *past = Some(Past { x, demand, air_curtain_power_w, curtain, passengers, door_open_fraction });
+                    let followed = self.loops.followed();
+                    *past = Some(Past {
+                        x,
+                        demand,
+                        air_curtain_power_w,
+                        curtain,
+                        followed,
+                        passengers,
+                        door_open_fraction,
+                    });
                 }
             }
             if from_s >= FIRST_S {
@@ -167,13 +180,14 @@ impl<'a, 'm, 'v> Drive<'a, 'm, 'v> {
                 votes = trailing.up_to(vote, length);
             }
             let means = trailing.push(&votes, &on_board[..length]);
+            judge.add(&means, &on_board[..length]);
             if let Some(record) = &mut record {
                 tell(from_s, &past, [&votes, &means], record);
             }
         }
         std::array::from_fn(|lane| {
             let end = BusState::of(&self.x, lane);
-            self.sums.summary(lane, seconds, self.variants[lane].segments, trailing.largest(lane), end)
+            self.sums.summary(lane, seconds, &self.variants[lane], (&trailing, &judge), end)
         })
     }
 
@@ -186,7 +200,9 @@ impl<'a, 'm, 'v> Drive<'a, 'm, 'v> {
             if begins_segment || variant.law.is_causal() {
                 let segment = &variant.segments[(second / segment_s) as usize];
                 self.loops.begin(lane, variant.law.setting(segment, cabin.ambient_k()), self.x[2]);
-                self.sums.begin(lane, segment);
+                if !variant.law.is_causal() {
+                    self.sums.begin(lane, segment);
+                }
             }
         }
         self.follow();
@@ -195,9 +211,10 @@ impl<'a, 'm, 'v> Drive<'a, 'm, 'v> {
     /// Air units and sums follow the modes of the loops.
     fn follow(&mut self) {
         self.air_units.follow(self.loops.modes());
+        let (sign, setpoint_k) = self.loops.followed();
         for (lane, variant) in self.variants.iter().enumerate() {
             if variant.law.is_causal() {
-                self.sums.track(lane, self.loops.followed(lane));
+                self.sums.track(lane, (sign.0[lane], setpoint_k.0[lane]));
             }
         }
     }
@@ -248,6 +265,7 @@ fn tell(from_s: u32, past: &[Option<Past>; VOTE_S], [votes, means]: [&Votes; 2],
             let now = Instant {
                 second: from_s + j as u32,
                 state: BusState::of(&past.x, lane),
+                setpoint_k: (past.followed.0.0[lane] != 0.0).then_some(past.followed.1.0[lane]),
                 commands,
                 air_curtain_power_w: past.air_curtain_power_w.0[lane],
                 passengers: past.passengers,

@@ -9,6 +9,8 @@ pub struct Instant {
     pub second: u32,
     /// The state at its end.
     pub state: BusState,
+    /// The setpoint of the cabin that the air unit followed during it in K; `None` while it was at rest.
+    pub setpoint_k: Option<f64>,
     /// The commands that held during it.
     pub commands: Commands,
     /// Power of the air curtains in W.

@@ -12,6 +12,7 @@ mod constants;
 pub mod control;
 mod drive;
 mod instant;
+mod judge;
 mod lanes;
 mod mission;
 mod model;

@@ -1,6 +1,6 @@
 //! A mission, and the variants in which it is driven.
 
-use cabin::{Cabin, Design, LoadChange};
+use cabin::{Cabin, ComfortWindow, Design, LoadChange};
 
 use crate::control::Law;
 use crate::{Scenario, Segment};
@@ -31,4 +31,6 @@ pub struct Variant<'m> {
     pub law: Law<'m>,
     /// The optima of the mission's segments.
     pub segments: &'m [Segment],
+    /// The windows by which passengers judge it; none where nobody asks.
+    pub windows: &'m [ComfortWindow],
 }

@@ -45,6 +45,6 @@ impl Replay {
     /// The variant of a mission in which this replays the optima of a design.
     #[must_use]
     pub fn of<'m>(&self, design: &'m Design, segments: &'m [Segment]) -> Variant<'m> {
-        Variant { design, scenario: self.scenario, law: self.law, segments }
+        Variant { design, scenario: self.scenario, law: self.law, segments, windows: &[] }
     }
 }

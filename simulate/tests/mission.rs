@@ -24,7 +24,9 @@ fn run(
     mut record: impl FnMut(&Instant),
 ) -> Summary {
     let variants = [replay.of(design, segments)];
-    simulate_with(mission, &Dynamics::default(), &variants, &mut |_, now| record(now)).expect("it has segments")[0]
+    simulate_with(mission, &Dynamics::default(), &variants, &mut |_, now| record(now))
+        .expect("it has segments")
+        .remove(0)
 }
 
 /// Constant inputs for so many hours.
@@ -224,6 +226,8 @@ fn causal() -> CausalController {
     CausalController {
         heating: Curve::through(&[(-10.0, 17.0), (10.0, 18.5), (25.0, 21.0)]).expect("three pairs"),
         cooling: Curve::through(&[(10.0, 23.0), (35.0, 26.0)]).expect("two pairs"),
+        dead_band_k: 0.0,
+        cools_above_c: f64::NEG_INFINITY,
         hysteresis_k: 1.0,
         air_curtain: AirCurtain::Above { heating_k: 4.8, cooling_k: 4.1 },
         heaters_below_c: Some(4.0),
@@ -238,32 +242,52 @@ fn prop_a_causal_controller_comes_out_as_in_the_reference() {
     let vehicle = Vehicle::default();
     let views = PassengerViews::new(&vehicle);
     let designs = [paper_designs().swap_remove(4), design("all", Heating::Ptc, true, true)];
-    let controller = causal();
-    let (mut heats, mut cools, mut curtains, mut heaters) = (0, 0, 0, 0);
+    let one_setpoint = Curve::through(&[(0.0, 20.0), (35.0, 27.0)]).expect("two pairs");
+    let single = CausalController {
+        heating: one_setpoint.clone(),
+        cooling: one_setpoint,
+        dead_band_k: 1.0,
+        cools_above_c: 17.0,
+        ..causal()
+    };
+    let (mut heats, mut cools, mut curtains, mut heaters, mut outside) = (0, 0, 0, 0, 0.0);
+    let windows = [0.25, 0.5, 1.0].map(|limit| ComfortWindow::symmetric(limit).expect("valid"));
     for first in [30, 1200, 2500, 3700, 5300] {
         let test = TestMission::new(&vehicle, &views, &designs, first, 3);
         let mission = test.mission();
         // One variant of each design; what its optima are does not matter.
         let variants = test.variants(&designs);
         let of_design = |d: usize| variants[d * variants.len() / 2];
-        for variant in [of_design(0), of_design(1)] {
-            let variant = Variant { scenario: FROM_DEPOT, law: Law::Causal(&controller), ..variant };
+        for (variant, controller) in [(of_design(0), &causal()), (of_design(1), &causal()), (of_design(0), &single)] {
+            let variant = Variant { scenario: FROM_DEPOT, law: Law::Causal(controller), windows: &windows, ..variant };
             let mut record = |_: usize, now: &Instant| {
                 heats += u32::from(now.commands.air_unit_power_w > 0.0);
                 cools += u32::from(now.commands.air_unit_power_w < 0.0);
                 curtains += u32::from(now.commands.air_curtain_on);
                 heaters += u32::from(now.commands.radiant_heater_power_w > 0.0);
             };
-            let ours =
-                simulate_with(&mission, &Dynamics::default(), &[variant], &mut record).expect("it has segments")[0];
+            let ours = simulate_with(&mission, &Dynamics::default(), &[variant], &mut record)
+                .expect("it has segments")
+                .remove(0);
             let fine = simulate_finely(&mission, &Dynamics::default(), &variant, 10, |_| ());
             let off_w = (ours.mean_hvac_power_w - fine.mean_hvac_power_w).abs();
             assert!(off_w < 0.1 + 2e-4 * fine.mean_hvac_power_w, "{first}: {ours:?} {fine:?}");
             assert!((ours.tracking_error_k - fine.tracking_error_k).abs() < 1e-3, "{first}: {ours:?} {fine:?}");
-            let votes = [ours, fine].map(|s| s.max_abs_pmv_15min.unwrap_or(0.0));
+            let votes = [&ours, &fine].map(|s| s.max_abs_pmv_15min.unwrap_or(0.0));
             assert!((votes[0] - votes[1]).abs() < 0.002, "{first}: {votes:?}");
+            let votes = [&ours, &fine].map(|s| s.mean_abs_pmv.unwrap_or(0.0));
+            assert!((votes[0] - votes[1]).abs() < 0.001, "{first}: {votes:?}");
+            assert!((ours.passenger_hours - fine.passenger_hours).abs() < 1e-9, "{first}: {ours:?} {fine:?}");
+            assert_eq!(ours.passenger_hours_outside.len(), windows.len());
+            let of_windows = ours.passenger_hours_outside.iter().zip(&fine.passenger_hours_outside);
+            for (ours, fine_hours) in of_windows {
+                // A vote that stays near a limit for long may count on either side.
+                assert!((ours - fine_hours).abs() <= 0.01 * fine.passenger_hours, "{first}: {ours} {fine:?}");
+                outside += ours;
+            }
         }
     }
+    assert!(outside > 10.0, "{outside}");
     assert!(heats > 1000 && cools > 1000 && curtains > 1000 && heaters > 1000, "{heats} {cools} {curtains} {heaters}");
 }
 
@@ -298,11 +322,11 @@ fn prop_a_last_part_of_any_length_is_simulated_to_its_end() {
     let (minutes, loads) = (vec![Cabin::new(&vehicle, &views, &d); 21], stops(1234));
     let mission = Mission { loads: &loads, minutes: &minutes, segments: 1, segment_s: 1234, door_open_share: 0.6 };
     let variant = Replay::PAPER.of(&design, &segments);
-    let ours = simulate(&mission, &Dynamics::default(), &[variant]).expect("it has a segment")[0];
+    let ours = &simulate(&mission, &Dynamics::default(), &[variant]).expect("it has a segment")[0];
     let fine = simulate_finely(&mission, &Dynamics::default(), &variant, 20, |_| ());
     assert_eq!(ours.seconds, 1234);
     assert!((ours.mean_hvac_power_w - fine.mean_hvac_power_w).abs() < 1.0, "{ours:?} {fine:?}");
-    let pmv = [ours, fine].map(|s| s.max_abs_pmv_15min.expect("somebody is on board"));
+    let pmv = [ours, &fine].map(|s| s.max_abs_pmv_15min.expect("somebody is on board"));
     assert!((pmv[0] - pmv[1]).abs() < 0.002, "{pmv:?}");
     assert_eq!(simulate(&Mission { segments: 0, ..mission }, &Dynamics::default(), &[]), None);
     assert_eq!(simulate(&Mission { minutes: &minutes[..20], ..mission }, &Dynamics::default(), &[variant]), None);

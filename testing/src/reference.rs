@@ -152,9 +152,10 @@ impl Controller<'_> {
                     OperatingMode::Cooling => t.cabin_k < cool_k - c.hysteresis_k,
                 };
                 if ends {
-                    self.set_mode(if t.cabin_k < heat_k {
+                    let may_cool = celsius(ambient_k) >= c.cools_above_c;
+                    self.set_mode(if t.cabin_k < heat_k - c.dead_band_k {
                         OperatingMode::Heating
-                    } else if t.cabin_k > cool_k {
+                    } else if may_cool && t.cabin_k > cool_k + c.dead_band_k {
                         OperatingMode::Cooling
                     } else {
                         OperatingMode::Passive
@@ -242,6 +243,7 @@ pub fn simulate_finely(
     let mut votes: Vec<f64> = Vec::new();
     let (mut energy_j, mut held_back_s, mut tracked_s, mut square_error) = (0.0, 0, 0, 0.0);
     let mut max_abs: Option<f64> = None;
+    let (mut passenger_s, mut abs_vote, mut outside_s) = (0.0, 0.0, vec![0.0; variant.windows.len()]);
     for second in 0..seconds {
         while let Some(load) = loads.next_if(|l| l.second <= second) {
             passengers = load.passengers;
@@ -261,6 +263,7 @@ pub fn simulate_finely(
         let instant = Instant {
             second,
             state: now,
+            setpoint_k: (controller.mode != OperatingMode::Passive).then_some(controller.setpoint_k),
             commands,
             air_curtain_power_w: if commands.air_curtain_on { cabin.air_curtain_power_w() } else { 0.0 },
             passengers,
@@ -270,6 +273,13 @@ pub fn simulate_finely(
         };
         energy_j += instant.hvac_power_w();
         held_back_s += u32::from(held_back);
+        passenger_s += passengers;
+        abs_vote += passengers * pmv_15min.abs();
+        for (outside_s, window) in outside_s.iter_mut().zip(variant.windows) {
+            if !(window.pmv_min()..=window.pmv_max()).contains(&pmv_15min) {
+                *outside_s += passengers;
+            }
+        }
         if passengers >= 1.0 {
             max_abs = Some(max_abs.unwrap_or(0.0).max(pmv_15min.abs()));
         }
@@ -292,6 +302,9 @@ pub fn simulate_finely(
         static_max_abs_pmv: optima().map(|o| o.pmv.abs()).fold(0.0, f64::max),
         saturated_fraction: f64::from(held_back_s) / f64::from(seconds),
         tracking_error_k: (square_error / f64::from(tracked_s.max(1))).sqrt(),
+        passenger_hours: passenger_s / 3600.0,
+        mean_abs_pmv: (passenger_s > 0.0).then(|| abs_vote / passenger_s),
+        passenger_hours_outside: outside_s.iter().map(|s| s / 3600.0).collect(),
         end: now,
     }
 }

@@ -13,8 +13,13 @@ use super::{AirCurtain, Setting};
 pub struct CausalController {
     /// Setpoint while heating.
     pub heating: Curve,
-    /// Setpoint while cooling, at every ambient temperature above that of heating.
+    /// Setpoint while cooling, at no ambient temperature below that of heating.
     pub cooling: Curve,
+    /// How far on the wrong side of its setpoint the cabin is as a mode begins, in K: 0 in the paper, whose two setpoints lie
+    /// apart. With one setpoint for both modes it keeps them from working against each other.
+    pub dead_band_k: f64,
+    /// Below this ambient temperature in °C no cooling begins; minus infinity in the paper.
+    pub cools_above_c: f64,
     /// How far beyond its setpoint the cabin is as a mode ends, in K; 1 in the paper.
     pub hysteresis_k: f64,
     /// When the air curtains run.
@@ -33,8 +38,8 @@ impl CausalController {
         Setting {
             heating_k,
             cooling_k,
-            heat_below_k: heating_k,
-            cool_above_k: cooling_k,
+            heat_below_k: heating_k - self.dead_band_k,
+            cool_above_k: if ambient_c < self.cools_above_c { f64::INFINITY } else { cooling_k + self.dead_band_k },
             stop_beyond_k: self.hysteresis_k,
             stops_idle: false,
             begins_anew: false,

@@ -199,9 +199,9 @@ impl Loops {
         };
     }
 
-    /// Where a mode is on: its sign, and the setpoint that it follows in K.
-    pub fn followed(&self, lane: usize) -> (f64, f64) {
-        (self.sign.0[lane], self.setpoint_k.0[lane])
+    /// The sign of each mode, and the setpoint that it follows in K.
+    pub fn followed(&self) -> (Lanes, Lanes) {
+        (self.sign, self.setpoint_k)
     }
 
     /// The commands of a second.

@@ -1,0 +1,72 @@
+//! How passengers fare on a mission: their mean vote, and how long they ride outside comfort windows.
+
+use cabin::Real;
+
+use crate::Variant;
+use crate::average::Votes;
+use crate::lanes::{LANES, Lanes};
+
+/// Sums over all seconds, each weighted by its passengers. What is judged is the vote of the last 15 minutes, a typical ride.
+#[derive(Debug, Clone)]
+pub(crate) struct Judge {
+    windows: Vec<Window>,
+    passenger_s: f64,
+    abs_vote: Lanes,
+}
+
+/// A window of each lane; one that a lane does not have is never left.
+#[derive(Debug, Clone, Copy)]
+struct Window {
+    low: Lanes,
+    high: Lanes,
+    outside_s: Lanes,
+}
+
+const HOUR_S: f64 = 3600.0;
+
+impl Judge {
+    pub fn new(variants: &[Variant<'_>; LANES]) -> Self {
+        let most = variants.iter().map(|v| v.windows.len()).max().unwrap_or(0);
+        let window = |place: usize| {
+            let limit = |of: fn(&cabin::ComfortWindow) -> f64, none: f64| {
+                Lanes(std::array::from_fn(|lane| variants[lane].windows.get(place).map_or(none, of)))
+            };
+            Window {
+                low: limit(|w| w.pmv_min(), f64::NEG_INFINITY),
+                high: limit(|w| w.pmv_max(), f64::INFINITY),
+                outside_s: Lanes::ZERO,
+            }
+        };
+        Self { windows: (0..most).map(window).collect(), passenger_s: 0.0, abs_vote: Lanes::ZERO }
+    }
+
+    /// Adds the 15-minute votes of some seconds, and who is on board in each.
+    #[inline(always)]
+    pub fn add(&mut self, votes: &Votes, passengers: &[f64]) {
+        for (vote, passengers) in votes.iter().zip(passengers) {
+            if *passengers == 0.0 {
+                continue;
+            }
+            self.passenger_s += passengers;
+            self.abs_vote = self.abs_vote + vote.abs() * *passengers;
+            for window in &mut self.windows {
+                let below = window.low.above(*vote, Lanes::ONE, Lanes::ZERO);
+                window.outside_s = window.outside_s + vote.above(window.high, Lanes::ONE, below) * *passengers;
+            }
+        }
+    }
+
+    pub fn passenger_hours(&self) -> f64 {
+        self.passenger_s / HOUR_S
+    }
+
+    /// The mean absolute vote of the passengers of a lane; `None` where nobody ever is on board.
+    pub fn mean_abs_pmv(&self, lane: usize) -> Option<f64> {
+        (self.passenger_s > 0.0).then(|| self.abs_vote.0[lane] / self.passenger_s)
+    }
+
+    /// Passenger-hours outside the first so many windows of a lane.
+    pub fn hours_outside(&self, lane: usize, windows: usize) -> Vec<f64> {
+        self.windows.iter().take(windows).map(|w| w.outside_s.0[lane] / HOUR_S).collect()
+    }
+}
