@@ -26,6 +26,13 @@ fn xval_sources_published_setpoints_are_those_of_their_sources() {
     assert!(at("vdv-economy", 30.8)[0] > at("vdv-comfort", 30.8)[0]);
     assert_eq!(at("vbz-18", -16.0), [13.5, 23.0]);
     assert_eq!(at("vbz-16", 26.5), [16.0, 26.5]);
+    assert_eq!(at("constant-20", -5.0), [20.0, 20.0]);
+    let single = ["vdv-comfort", "vdv-economy", "vdv-max", "vdv-min", "constant-20"];
+    assert!(all.iter().all(|p| p.is_single() == single.contains(&p.name)));
+    // Nobody cools below its heating setpoint.
+    for ambient_c in (-25..45).map(f64::from) {
+        assert!(all.iter().all(|p| p.cooling.at(ambient_c) >= p.heating.at(ambient_c)), "{ambient_c}");
+    }
     assert_eq!(at("vecto", 30.0), [18.0, 27.0]);
     assert_eq!(at("vecto", -5.0), [18.0, 23.0]);
 }

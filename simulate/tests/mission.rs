@@ -4,7 +4,7 @@ use cabin::{
     Cabin, ComfortWindow, Design, Disturbances, Heating, LoadChange, OperatingMode, Operation, PassengerViews,
     Temperatures, Vehicle, kelvin,
 };
-use setpoints::Curve;
+use setpoints::{Curve, published};
 use simulate::control::{AirCurtain, CausalController, Law};
 use simulate::{BusState, Commands, Dynamics, Instant, Mission, Replay, Segment, Summary, simulate, simulate_with};
 use simulate::{Limits, Scenario, Start, Variant};
@@ -289,6 +289,38 @@ fn prop_a_causal_controller_comes_out_as_in_the_reference() {
     }
     assert!(outside > 10.0, "{outside}");
     assert!(heats > 1000 && cools > 1000 && curtains > 1000 && heaters > 1000, "{heats} {cools} {curtains} {heaters}");
+}
+
+#[test]
+fn prop_published_setpoints_drive_a_mission_without_heating_against_cooling() {
+    let vehicle = Vehicle::default();
+    let views = PassengerViews::new(&vehicle);
+    let designs = [paper_designs().swap_remove(4)];
+    let (mut heats, mut cools) = (0, 0);
+    for first in [30, 2500, 3700, 5300] {
+        let test = TestMission::new(&vehicle, &views, &designs, first, 6);
+        for published in published() {
+            let controller = CausalController::published(&published);
+            let variant = Variant { scenario: FROM_DEPOT, law: Law::Causal(&controller), ..test.variants(&designs)[0] };
+            // Where the air unit last worked, and with what sign.
+            let (mut last, mut turns): (Option<(f64, u32)>, Vec<u32>) = (None, Vec::new());
+            let mut record = |_: usize, now: &Instant| {
+                let power_w = now.commands.air_unit_power_w;
+                if power_w == 0.0 {
+                    return;
+                }
+                heats += u32::from(power_w > 0.0);
+                cools += u32::from(power_w < 0.0);
+                if let Some((_, second)) = last.filter(|(sign, _)| *sign != power_w.signum()) {
+                    turns.push(now.second - second);
+                }
+                last = Some((power_w.signum(), now.second));
+            };
+            simulate_with(&test.mission(), &Dynamics::default(), &[variant], &mut record).expect("it has segments");
+            assert!(turns.len() <= 2 && turns.iter().all(|s| *s > 300), "{} {first}: {turns:?}", published.name);
+        }
+    }
+    assert!(heats > 10_000 && cools > 10_000, "{heats} {cools}");
 }
 
 #[test]

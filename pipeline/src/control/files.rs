@@ -100,7 +100,7 @@ fn published_table() -> String {
     let mut text = "profile,ambient_temperature_c,heating_setpoint_c,cooling_setpoint_c,source\n".to_owned();
     for of in published() {
         for ambient_c in (-25..=40).map(f64::from) {
-            let cools = of.heating == of.cooling || ambient_c >= of.cooling.valid_c[0];
+            let cools = of.is_single() || ambient_c >= of.cooling.valid_c[0];
             let cooling = if cools { format!("{:.2}", of.cooling.at(ambient_c)) } else { String::new() };
             let heating_c = of.heating.at(ambient_c);
             let _ = writeln!(text, "{},{ambient_c},{heating_c:.2},{cooling},\"{}\"", of.name, of.source);

@@ -1,7 +1,7 @@
 //! [`Law::Causal`](super::Law::Causal): the paper's controller (section "Case Study 2: Causal Online Control").
 
 use cabin::celsius;
-use setpoints::Curve;
+use setpoints::{Curve, Published};
 
 use super::{AirCurtain, Setting};
 
@@ -30,7 +30,28 @@ pub struct CausalController {
     pub radiant_heater_k: f64,
 }
 
+/// How far from a setpoint that is meant for both modes each of them begins, in K. A substitute, since the sources do not say
+/// how they keep the two apart: at 1 K, where the other mode ends, what one overshoots starts the other again and again.
+const DEAD_BAND_K: f64 = 2.0;
+/// Hysteresis of the paper's state machine (figure `state-machine`) in K.
+const HYSTERESIS_K: f64 = 1.0;
+
 impl CausalController {
+    /// The paper's state machine with published setpoints, and without curtains and radiant heaters.
+    #[must_use]
+    pub fn published(published: &Published) -> Self {
+        Self {
+            heating: published.heating.clone(),
+            cooling: published.cooling.clone(),
+            dead_band_k: if published.is_single() { DEAD_BAND_K } else { 0.0 },
+            cools_above_c: published.cools_above_c,
+            hysteresis_k: HYSTERESIS_K,
+            air_curtain: AirCurtain::Off,
+            heaters_below_c: None,
+            radiant_heater_k: 0.0,
+        }
+    }
+
     /// Setpoints and thresholds at an ambient temperature in K.
     pub(super) fn setting(&self, ambient_k: f64) -> Setting {
         let ambient_c = celsius(ambient_k);
