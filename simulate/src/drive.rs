@@ -57,8 +57,11 @@ fn abreast(
             }
         });
         let of_lane = of_lane.as_mut().map(|record| record as &mut Record<'_>);
-        let all = Arch::new().dispatch(Run { drive: Drive::new(mission, dynamics, lanes), record: of_lane });
-        summaries.extend(all.into_iter().take(some.len()));
+        let mut judge = Judge::new(&lanes);
+        let drive = Drive::new(mission, dynamics, lanes);
+        let end = Arch::new().dispatch(Run { drive, judge: &mut judge, record: of_lane });
+        let summary = |(lane, variant): (usize, &Variant<'_>)| end.summary(lane, mission, variant, &judge);
+        summaries.extend(some.iter().enumerate().map(summary));
     }
     Some(summaries)
 }
@@ -67,15 +70,16 @@ fn abreast(
 /// alike: none contracts a product and a sum into one operation.
 struct Run<'a, 'm, 'v, 'r> {
     drive: Drive<'a, 'm, 'v>,
+    judge: &'a mut Judge,
     record: Option<&'r mut Record<'r>>,
 }
 
 impl WithSimd for Run<'_, '_, '_, '_> {
-    type Output = [Summary; LANES];
+    type Output = End;
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> Self::Output {
-        self.drive.run(self.record)
+        self.drive.run(self.judge, self.record)
     }
 }
 
@@ -90,6 +94,22 @@ struct Drive<'a, 'm, 'v> {
     sums: Sums,
     /// [`Cabin::door_loss_share`] with air curtains.
     with_curtain: Lanes,
+}
+
+/// All lanes as a drive ends. What it adds up in every second is only moved here: a reference to it would keep it in memory
+/// instead of registers, which costs a fifth of the time.
+struct End {
+    x: Vector,
+    sums: Sums,
+    max_abs_pmv_15min: [Option<f64>; LANES],
+}
+
+impl End {
+    fn summary(&self, lane: usize, mission: &Mission<'_, '_>, variant: &Variant<'_>, judge: &Judge) -> Summary {
+        let seconds = mission.segments as u32 * mission.segment_s;
+        let votes = (self.max_abs_pmv_15min[lane], judge.rides(lane, variant.windows.len()));
+        self.sums.summary(lane, seconds, variant.segments, votes, BusState::of(&self.x, lane))
+    }
 }
 
 /// What a second of all lanes looks like, for whoever records it.
@@ -130,12 +150,11 @@ impl<'a, 'm, 'v> Drive<'a, 'm, 'v> {
     }
 
     #[inline(always)]
-    fn run<'r>(mut self, mut record: Option<&'r mut Record<'r>>) -> [Summary; LANES] {
+    fn run<'r>(mut self, judge: &mut Judge, mut record: Option<&'r mut Record<'r>>) -> End {
         let mission = self.mission;
         let mut clothes = mission.minutes[0].clothes(&temperatures(&self.x));
         let first = mission.minutes[0].step_vote(&temperatures(&self.x), &mut clothes);
         let mut trailing = TrailingVotes::new(first);
-        let mut judge = Judge::new(&self.variants);
         let mut loads = mission.loads.iter().peekable();
         let (mut passengers, mut door_open_fraction) = (0.0, 0.0);
         let seconds = mission.segments as u32 * mission.segment_s;
@@ -185,10 +204,7 @@ impl<'a, 'm, 'v> Drive<'a, 'm, 'v> {
                 tell(from_s, &past, [&votes, &means], record);
             }
         }
-        std::array::from_fn(|lane| {
-            let end = BusState::of(&self.x, lane);
-            self.sums.summary(lane, seconds, &self.variants[lane], (&trailing, &judge), end)
-        })
+        End { x: self.x, sums: self.sums, max_abs_pmv_15min: std::array::from_fn(|lane| trailing.largest(lane)) }
     }
 
     /// A minute begins, and with some of them a segment.
@@ -283,7 +299,8 @@ mod tests {
     use super::*;
     use crate::{Replay, Segment};
     use cabin::{
-        Cop, Design, Devices, Disturbances, LoadChange, Operation, PassengerViews, StandardRange, Vehicle, kelvin,
+        ComfortWindow, Cop, Design, Devices, Disturbances, LoadChange, Operation, PassengerViews, StandardRange,
+        Vehicle, kelvin,
     };
 
     /// What is stored does not depend on the machine: with all vector instructions that it has, and with none.
@@ -327,11 +344,19 @@ mod tests {
         let stop = |i: u32| LoadChange { second: 40 * i, passengers: f64::from(i % 23), door_open: f64::from(i % 2) };
         let loads: Vec<LoadChange> = (0..90).map(stop).collect();
         let mission = Mission { loads: &loads, minutes: &minutes, segments: 1, segment_s: 3600, door_open_share: 0.6 };
-        let variants = std::array::from_fn(|lane| Replay::ALL[lane % 4].of(&designs[lane / 4], &segments));
-        let drive = || Drive::new(&mission, &Dynamics::default(), variants);
-        let with_all = Arch::new().dispatch(Run { drive: drive(), record: None });
-        let with_none = Run { drive: drive(), record: None }.with_simd(pulp::Scalar);
-        assert_eq!(with_all, with_none);
+        let windows = [ComfortWindow::symmetric(0.5).expect("a limit on the scale")];
+        let variant =
+            |lane: usize| Variant { windows: &windows, ..Replay::ALL[lane % 4].of(&designs[lane / 4], &segments) };
+        let variants = std::array::from_fn(variant);
+        let driven = |way: fn(Run<'_, '_, '_, '_>) -> End| {
+            let mut judge = Judge::new(&variants);
+            let drive = Drive::new(&mission, &Dynamics::default(), variants);
+            let end = way(Run { drive, judge: &mut judge, record: None });
+            variants.iter().enumerate().map(|(lane, v)| end.summary(lane, &mission, v, &judge)).collect::<Vec<_>>()
+        };
+        let with_all = driven(|run| Arch::new().dispatch(run));
+        assert_eq!(with_all, driven(|run| run.with_simd(pulp::Scalar)));
         assert_ne!(with_all[0], with_all[4]);
+        assert!(with_all.iter().any(|s| s.rides.hours_outside[0] > 0.0));
     }
 }

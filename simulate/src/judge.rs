@@ -6,6 +6,17 @@ use crate::Variant;
 use crate::average::Votes;
 use crate::lanes::{LANES, Lanes};
 
+/// How the passengers of a mission fare, by the vote of their last 15 minutes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rides {
+    /// Passengers times hours on board.
+    pub passenger_hours: f64,
+    /// Mean absolute vote of the passengers; `None` where nobody ever is on board.
+    pub mean_abs_pmv: Option<f64>,
+    /// Passenger-hours with a vote outside each of the variant's windows.
+    pub hours_outside: Vec<f64>,
+}
+
 /// Sums over all seconds, each weighted by its passengers. What is judged is the vote of the last 15 minutes, a typical ride.
 #[derive(Debug, Clone)]
 pub(crate) struct Judge {
@@ -56,17 +67,13 @@ impl Judge {
         }
     }
 
-    pub fn passenger_hours(&self) -> f64 {
-        self.passenger_s / HOUR_S
-    }
-
-    /// The mean absolute vote of the passengers of a lane; `None` where nobody ever is on board.
-    pub fn mean_abs_pmv(&self, lane: usize) -> Option<f64> {
-        (self.passenger_s > 0.0).then(|| self.abs_vote.0[lane] / self.passenger_s)
-    }
-
-    /// Passenger-hours outside the first so many windows of a lane.
-    pub fn hours_outside(&self, lane: usize, windows: usize) -> Vec<f64> {
-        self.windows.iter().take(windows).map(|w| w.outside_s.0[lane] / HOUR_S).collect()
+    /// What a lane comes to, which has so many windows.
+    #[inline(always)]
+    pub fn rides(&self, lane: usize, windows: usize) -> Rides {
+        Rides {
+            passenger_hours: self.passenger_s / HOUR_S,
+            mean_abs_pmv: (self.passenger_s > 0.0).then(|| self.abs_vote.0[lane] / self.passenger_s),
+            hours_outside: self.windows.iter().take(windows).map(|w| w.outside_s.0[lane] / HOUR_S).collect(),
+        }
     }
 }

@@ -25,6 +25,7 @@ mod trace;
 pub use constants::{Dynamics, DynamicsError};
 pub use drive::{Record, simulate, simulate_with};
 pub use instant::Instant;
+pub use judge::Rides;
 pub use lanes::LANES;
 pub use mission::{Mission, Variant};
 pub use model::{BusState, Commands, depot_temperature_k};

@@ -3,11 +3,9 @@
 use cabin::OperatingMode;
 use cabin::Real;
 
-use crate::average::TrailingVotes;
 use crate::control::Demand;
-use crate::judge::Judge;
 use crate::lanes::{LANES, Lanes};
-use crate::{BusState, Segment, Variant};
+use crate::{BusState, Rides, Segment};
 
 /// What a simulation comes to, beside what the steady-state optima foresee.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,12 +24,8 @@ pub struct Summary {
     pub saturated_fraction: f64,
     /// Root mean square of cabin temperature less setpoint in K, while the optimum, or a causal controller, has the air unit on.
     pub tracking_error_k: f64,
-    /// Passengers times hours on board.
-    pub passenger_hours: f64,
-    /// Mean absolute value of the 15-minute mean vote of the passengers; `None` where nobody ever is on board.
-    pub mean_abs_pmv: Option<f64>,
-    /// Passenger-hours with a 15-minute mean vote outside each of the variant's windows.
-    pub passenger_hours_outside: Vec<f64>,
+    /// How its passengers fare.
+    pub rides: Rides,
     /// Temperatures and air unit at the end.
     pub end: BusState,
 }
@@ -89,25 +83,22 @@ impl Sums {
         &self,
         lane: usize,
         seconds: u32,
-        variant: &Variant<'_>,
-        (votes, judge): (&TrailingVotes, &Judge),
+        segments: &[Segment],
+        (max_abs_pmv_15min, rides): (Option<f64>, Rides),
         end: BusState,
     ) -> Summary {
         debug_assert!(lane < LANES);
         let of = |sum: &Lanes| sum.0[lane];
-        let segments = variant.segments;
         let optima = || segments.iter().map(|s| &s.optimum);
         Summary {
             seconds,
             mean_hvac_power_w: of(&self.energy_j) / f64::from(seconds),
             static_mean_hvac_power_w: optima().map(|o| o.hvac_power_w()).sum::<f64>() / segments.len() as f64,
-            max_abs_pmv_15min: votes.largest(lane),
+            max_abs_pmv_15min,
             static_max_abs_pmv: optima().map(|o| o.pmv.abs()).fold(0.0, f64::max),
             saturated_fraction: of(&self.saturated_s) / f64::from(seconds),
             tracking_error_k: (of(&self.square_error) / of(&self.tracked_s).max(1.0)).sqrt(),
-            passenger_hours: judge.passenger_hours(),
-            mean_abs_pmv: judge.mean_abs_pmv(lane),
-            passenger_hours_outside: judge.hours_outside(lane, variant.windows.len()),
+            rides,
             end,
         }
     }

@@ -2,7 +2,7 @@
 
 use cabin::{
     Cabin, ComfortWindow, Design, Disturbances, Heating, LoadChange, OperatingMode, Operation, PassengerViews,
-    Temperatures, Vehicle, kelvin,
+    Temperatures, Vehicle, celsius, kelvin,
 };
 use setpoints::{Curve, published};
 use simulate::control::{AirCurtain, CausalController, Law};
@@ -265,6 +265,14 @@ fn prop_a_causal_controller_comes_out_as_in_the_reference() {
                 cools += u32::from(now.commands.air_unit_power_w < 0.0);
                 curtains += u32::from(now.commands.air_curtain_on);
                 heaters += u32::from(now.commands.radiant_heater_power_w > 0.0);
+                let ambient_c = celsius(mission.minutes[now.second as usize / 60].ambient_k());
+                let setpoints_k = [&controller.heating, &controller.cooling].map(|curve| kelvin(curve.at(ambient_c)));
+                match now.setpoint_k {
+                    Some(k) if now.commands.air_unit_power_w > 0.0 => assert_eq!(k, setpoints_k[0]),
+                    Some(k) if now.commands.air_unit_power_w < 0.0 => assert_eq!(k, setpoints_k[1]),
+                    Some(k) => assert!(setpoints_k.contains(&k)),
+                    None => assert_eq!(now.commands.air_unit_power_w, 0.0),
+                }
             };
             let ours = simulate_with(&mission, &Dynamics::default(), &[variant], &mut record)
                 .expect("it has segments")
@@ -275,11 +283,12 @@ fn prop_a_causal_controller_comes_out_as_in_the_reference() {
             assert!((ours.tracking_error_k - fine.tracking_error_k).abs() < 1e-3, "{first}: {ours:?} {fine:?}");
             let votes = [&ours, &fine].map(|s| s.max_abs_pmv_15min.unwrap_or(0.0));
             assert!((votes[0] - votes[1]).abs() < 0.002, "{first}: {votes:?}");
-            let votes = [&ours, &fine].map(|s| s.mean_abs_pmv.unwrap_or(0.0));
+            let votes = [&ours, &fine].map(|s| s.rides.mean_abs_pmv.unwrap_or(0.0));
             assert!((votes[0] - votes[1]).abs() < 0.001, "{first}: {votes:?}");
+            let [ours, fine] = [ours.rides, fine.rides];
             assert!((ours.passenger_hours - fine.passenger_hours).abs() < 1e-9, "{first}: {ours:?} {fine:?}");
-            assert_eq!(ours.passenger_hours_outside.len(), windows.len());
-            let of_windows = ours.passenger_hours_outside.iter().zip(&fine.passenger_hours_outside);
+            assert_eq!(ours.hours_outside.len(), windows.len());
+            let of_windows = ours.hours_outside.iter().zip(&fine.hours_outside);
             for (ours, fine_hours) in of_windows {
                 // A vote that stays near a limit for long may count on either side.
                 assert!((ours - fine_hours).abs() <= 0.01 * fine.passenger_hours, "{first}: {ours} {fine:?}");

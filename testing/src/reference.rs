@@ -5,7 +5,8 @@
 use cabin::{Cabin, Design, Heating, OperatingMode, Operation, Temperatures, celsius, kelvin};
 use simulate::control::{AirCurtain, Law};
 use simulate::{
-    BusState, Commands, Dynamics, Instant, Limits, Mission, Segment, Start, Summary, Variant, depot_temperature_k,
+    BusState, Commands, Dynamics, Instant, Limits, Mission, Rides, Segment, Start, Summary, Variant,
+    depot_temperature_k,
 };
 
 /// Heaters, interior, cabin, inside and outside of the shell in K, heat of the machine in W; or their slopes.
@@ -302,9 +303,11 @@ pub fn simulate_finely(
         static_max_abs_pmv: optima().map(|o| o.pmv.abs()).fold(0.0, f64::max),
         saturated_fraction: f64::from(held_back_s) / f64::from(seconds),
         tracking_error_k: (square_error / f64::from(tracked_s.max(1))).sqrt(),
-        passenger_hours: passenger_s / 3600.0,
-        mean_abs_pmv: (passenger_s > 0.0).then(|| abs_vote / passenger_s),
-        passenger_hours_outside: outside_s.iter().map(|s| s / 3600.0).collect(),
+        rides: Rides {
+            passenger_hours: passenger_s / 3600.0,
+            mean_abs_pmv: (passenger_s > 0.0).then(|| abs_vote / passenger_s),
+            hours_outside: outside_s.iter().map(|s| s / 3600.0).collect(),
+        },
         end: now,
     }
 }
