@@ -13,6 +13,13 @@ pub(crate) struct Row {
     pub weight: f64,
 }
 
+impl Row {
+    /// How far the point lies above a curve.
+    pub fn beyond(&self, coefficients: &[f64]) -> f64 {
+        self.value - self.basis.iter().zip(coefficients).map(|(x, c)| x * c).sum::<f64>()
+    }
+}
+
 /// The coefficients c with the least Σ weight (basis · c − value)² over some rows; under basis · c ≥ value where the curve is to
 /// lie `above` them, and under row · c ≥ 0 for those in `rising`. `None` where there are none.
 pub(crate) fn least_squares(rows: &[&Row], above: bool, rising: &[Vec<f64>]) -> Option<Vec<f64>> {

@@ -8,6 +8,7 @@
 //! Pure functions of plain structs: no files, no clock, no database.
 
 mod analytic;
+mod basis;
 mod curve;
 mod fit;
 mod profile;
