@@ -76,7 +76,8 @@ pub enum Command {
     Solve(SolveArgs),
     /// Simulate every mission second by second, beside what the steady-state optima foresee.
     Simulate(StudyArgs),
-    /// Extract setpoints for a controller on board from the optima: heating and cooling profiles, air-curtain thresholds.
+    /// Extract setpoints for a controller on board from the optima, drive every mission by them and by published ones, and write
+    /// the setpoints as files.
     Control(ControlArgs),
     /// Write tables and figures.
     Report(StudyArgs),
@@ -135,6 +136,7 @@ impl Command {
                 | Self::Shade(_)
                 | Self::Solve(_)
                 | Self::Simulate(_)
+                | Self::Control(_)
                 | Self::Report(_)
                 | Self::Run { .. }
                 | Self::Verify { .. }
@@ -252,10 +254,6 @@ pub struct DemoArgs {
 pub struct ControlArgs {
     #[command(flatten)]
     pub study: StudyArgs,
-
-    /// Share of the hours in a mode whose comfort a profile keeps, 0.5 to 1.
-    #[arg(long, value_name = "SHARE", default_value_t = 0.98)]
-    pub coverage: f64,
 
     /// Folder for a TOML and a CSV of each design and comfort window, beside the study file.
     #[arg(long, value_name = "DIR", default_value = "setpoints")]

@@ -89,8 +89,12 @@ fn dispatch(args: &Args, console: &Console) -> Result<Ending, Failure> {
         }
         Command::Simulate(study) => run(&open(study)?, &[Stage::Simulate], options, console),
         Command::Control(control) => {
-            let (folder, found) = pipeline::control(&open(&control.study)?, control.coverage, &control.to)?;
-            print::setpoints(&folder, &found)
+            let study = open(&control.study)?;
+            let ending = run(&study, &[Stage::Control], options, console)?;
+            let (found, folder) = (pipeline::setpoints(&study)?, study.base.join(&control.to));
+            pipeline::write_setpoints(&study, &found, &folder)?;
+            print::setpoints(&folder, &found)?;
+            Ok(ending)
         }
         Command::Report(study) => run(&open(study)?, &[Stage::Report], options, console),
         Command::Run { solve: typed, dry_run: true } => {

@@ -1,9 +1,9 @@
 //! What came of a command, in words on stdout.
 
 use anyhow::anyhow;
-use cabin::{OperatingMode, celsius};
+use cabin::{ComfortWindow, OperatingMode, celsius};
 use pipeline::{
-    Check, Done, Fetched, FetchedFile, Point, Setpoints, Shown, Stage, StagePlan, Status, Verification, write_whole,
+    Check, Done, Fetched, FetchedFile, Point, SetpointRow, Shown, Stage, StagePlan, Status, Verification, write_whole,
 };
 use serde::Serialize;
 use solve::Method;
@@ -41,9 +41,9 @@ pub fn run(study: &Study, stages: &[Stage], done: &Done, elapsed: Duration) -> R
     }
 }
 
-pub fn setpoints(folder: &Path, found: &[Setpoints]) -> Result<Ending, Failure> {
-    for of in found {
-        let range = format!("{} within PMV {} … {}", of.design, of.window.pmv_min(), of.window.pmv_max());
+pub fn setpoints(folder: &Path, found: &[SetpointRow]) -> Result<(), Failure> {
+    for SetpointRow { design, window, setpoints: of } in found {
+        let range = format!("{design} within PMV {}", window_text(*window));
         for (mode, profile) in [("heating", &of.heating), ("cooling", &of.cooling)] {
             match profile {
                 Ok(p) => say(format_args!(
@@ -70,13 +70,21 @@ pub fn setpoints(folder: &Path, found: &[Setpoints]) -> Result<Ending, Failure> 
                 None => say(format_args!("{range}, {mode}: air curtains always or never; by the model {analytic}"))?,
             }
         }
-        if let Some(t) = &of.heaters_below_c {
+        if let Some(t) = &of.heaters {
             let wrong = 100.0 * t.misclassified;
-            say(format_args!("{range}: radiant heaters below {:.1} °C, wrong in {wrong:.1} % of the hours", t.value))?;
+            say(format_args!(
+                "{range}: radiant heaters below {:.1} °C, wrong in {wrong:.1} % of the hours",
+                t.below_c
+            ))?;
         }
     }
-    say(format_args!("{} files in {}, and published.csv", 2 * found.len(), folder.display()))?;
-    Ok(Ending::Done)
+    say(format_args!("{} files in {}, and published.csv", 2 * found.len(), folder.display()))
+}
+
+/// `±1` for a symmetric window, `-0.5 … 0.7` for another.
+fn window_text(window: ComfortWindow) -> String {
+    let (low, high) = (window.pmv_min(), window.pmv_max());
+    if window.is_symmetric() { format!("±{high}") } else { format!("{low} … {high}") }
 }
 
 pub fn check(study: &Study, check: &Check) -> Result<Ending, Failure> {
@@ -95,6 +103,12 @@ pub fn check(study: &Study, check: &Check) -> Result<Ending, Failure> {
         study.simulated_windows.len(),
         check.replays,
         check.simulated_s / 1e6
+    ))?;
+    say(format_args!(
+        "driven by causal controllers: {} designs × {} windows and published setpoints, at most {:.0} million seconds",
+        study.control.designs.len(),
+        study.control.windows.len(),
+        check.driven_s / 1e6
     ))?;
     say(format_args!("about {:.0} s on two cores, {:.0} MB of database", check.seconds, check.database_bytes / 1e6))?;
     for (reason, count) in &check.excluded {
@@ -172,6 +186,7 @@ fn unit(stage: &str) -> &'static str {
         "shade" => "segments to join",
         "solve" => "points to compute",
         "simulate" => "missions to simulate",
+        "control" => "missions to drive by controllers",
         _ => "files to write",
     }
 }
@@ -203,6 +218,11 @@ pub fn status(status: &Status, stages: Option<&[StagePlan]>, json: bool) -> Resu
     if status.unsimulated_missions > 0 {
         let count = status.unsimulated_missions;
         say(format_args!("{count} missions cannot be simulated; the view simulation_failure says why"))?;
+    }
+    say(format_args!("{} missions driven by causal controllers (mission × design)", status.controlled_missions))?;
+    if status.uncontrolled_missions > 0 {
+        let count = status.uncontrolled_missions;
+        say(format_args!("{count} missions cannot be driven by controllers; the view control_failure says why"))?;
     }
     if !status.missing_months.is_empty() {
         say(format_args!("months without samples: {:?}", status.missing_months))?;

@@ -7,6 +7,7 @@ use common::Scratch;
 /// A study of some missions of the year, solved.
 fn solved() -> Scratch {
     let scratch = Scratch::small(24, "[0.5, 1.0]", "[]");
+    scratch.edit("study.toml", "coverage = 0.98", "coverage = 0.9");
     scratch.expect(0, &["run"]);
     scratch
 }
@@ -22,8 +23,8 @@ fn number(table: &toml::Table, key: &str) -> f64 {
 #[test]
 fn cli_profiles_cover_the_hours_that_they_claim() {
     let scratch = solved();
-    let run = scratch.expect(0, &["control", "--coverage", "0.9"]);
-    assert!(run.stdout.contains("hp+curtain within PMV -1 … 1, heating: "), "{}", run.stdout);
+    let run = scratch.expect(0, &["control"]);
+    assert!(run.stdout.contains("hp+curtain within PMV ±1, heating: "), "{}", run.stdout);
     assert!(run.stdout.contains("20 files in "), "{}", run.stdout);
     for limit in ["0.5", "1"] {
         let setup = file(&scratch, &format!("hp+curtain_pmv_-{limit}_{limit}.toml"));
@@ -66,14 +67,13 @@ fn cli_profiles_cover_the_hours_that_they_claim() {
     assert!(published.contains("\nvbz-18,-16,13.50,,\"VBZ"), "{published}");
     // The same bytes again.
     let before = scratch.read("setpoints/hp_pmv_-1_1.toml");
-    scratch.expect(0, &["control", "--coverage", "0.9", "--threads", "1"]);
+    scratch.expect(0, &["control", "--threads", "1"]);
     assert_eq!(before, scratch.read("setpoints/hp_pmv_-1_1.toml"));
 }
 
 #[test]
 fn cli_setpoints_are_those_of_fresh_optima() {
     let scratch = solved();
-    scratch.expect(2, &["control", "--coverage", "0.2"]);
     scratch.edit("study.toml", "pmv_limits = [0.5, 1.0]", "pmv_limits = [0.5, 0.75]");
     let run = scratch.expect(3, &["control"]);
     assert!(
@@ -88,4 +88,125 @@ fn cli_setpoints_are_those_of_fresh_optima() {
     let run = scratch.expect(0, &["control", "--to", "elsewhere"]);
     assert!(run.stdout.contains("no profile; "), "{}", run.stdout);
     assert!(scratch.path("elsewhere/hp_pmv_-3_3.csv").exists());
+}
+
+#[test]
+fn cli_ones_own_setpoints_are_driven_like_published_ones() {
+    let scratch = Scratch::small(6, "[0.5, 1.0]", "[]");
+    let profiles = "profiles = { \"depot 7\" = \"own.csv\" }\ndesigns = [\"hp+rh\", \"hp+curtain\"]";
+    scratch.edit("study.toml", "coverage = 0.98", &format!("coverage = 0.98\n{profiles}"));
+    let header = "ambient_temperature_c,heating_setpoint_c,cooling_setpoint_c\n";
+    scratch.write("own.csv", format!("{header}-10,20,20\n30,20,20\n"));
+    scratch.expect(0, &["run"]);
+    // Those of the constant that others have published, judged by both windows.
+    let of = |controller: &str| {
+        scratch.query(&format!(
+            "SELECT mission, design, pmv_limit, mean_hvac_power_w, mean_abs_pmv, max_abs_pmv_15min,
+                passenger_hours_outside, tracking_error_k
+             FROM control WHERE controller = '{controller}' ORDER BY 1, 2, 3"
+        ))
+    };
+    assert_eq!(of("depot 7").len(), 6 * 2 * 2);
+    assert_eq!(of("depot 7"), of("constant-20"));
+    // Another table is driven anew, and is not theirs.
+    scratch.write("own.csv", format!("{header}-10,20,24\n30,20,24\n"));
+    let run = scratch.expect(0, &["run"]);
+    assert!(run.stderr.contains("12 missions driven by causal controllers now"), "{}", run.stderr);
+    assert!(of("depot 7") != of("constant-20"));
+    let run = scratch.expect(0, &["run"]);
+    assert!(run.stderr.contains(" 0 missions driven by causal controllers now"), "{}", run.stderr);
+
+    scratch.write("own.csv", format!("{header}-10,20,24\n30,20,19\n"));
+    for command in ["check", "run", "control"] {
+        let run = scratch.expect(3, &[command]);
+        let both = format!("{}{}", run.stdout, run.stderr);
+        assert!(both.contains("own.csv: line 3, column cooling_setpoint_c: 19 is below heating_setpoint_c"), "{both}");
+    }
+    std::fs::remove_file(scratch.path("own.csv")).unwrap();
+    assert!(scratch.expect(3, &["control"]).stderr.contains("own.csv"));
+    for (from, to, said) in [
+        ("\"depot 7\"", "\"vecto\"", "\"vecto\" is the name of other setpoints"),
+        (
+            "\"hp+rh\", ",
+            "\"hp+heaters\", ",
+            "\"hp+heaters\" is not one of the study's: ptc, ptc+rh, hp, hp+rh, hp+curtain",
+        ),
+        ("coverage = 0.98", "coverage = 0.2", "[control] coverage = 0.2 must lie between 0.5 and 1"),
+    ] {
+        let before = scratch.read("study.toml");
+        scratch.edit("study.toml", from, to);
+        let run = scratch.expect(2, &["control"]);
+        assert!(run.stderr.contains(said), "{}", run.stderr);
+        scratch.write("study.toml", before);
+    }
+}
+
+#[test]
+fn prop_a_year_under_control_is_the_mean_of_its_missions() {
+    let scratch = solved();
+    let controllers = scratch.query("SELECT DISTINCT controller FROM control_annual ORDER BY 1");
+    assert_eq!(controllers.len(), 10, "{controllers:?}");
+    // Once more, by other means: the mean of each day's share, month by month.
+    let rows = scratch.query(
+        "WITH monthly AS (
+            SELECT pmv_limit, controller, month, sum(mean_hvac_power_w * seconds) / sum(seconds) AS power_w,
+                sum(passenger_hours_outside) / sum(passenger_hours) AS outside,
+                sum(mean_abs_pmv * passenger_hours) / sum(passenger_hours) AS abs_pmv
+            FROM control GROUP BY 1, 2, 3)
+         SELECT a.controller, a.mean_hvac_power_w - sum(m.power_w * w.days) / sum(w.days),
+            a.outside_fraction - sum(m.outside * w.days) / sum(w.days),
+            a.mean_abs_pmv - sum(m.abs_pmv * w.days) / sum(w.days), a.outside_fraction, a.mean_abs_pmv, a.pmv_limit
+         FROM control_annual AS a JOIN monthly AS m USING (pmv_limit, controller) JOIN month_weight AS w USING (month)
+         GROUP BY a.pmv_limit, a.controller",
+    );
+    assert_eq!(rows.len(), 20);
+    for row in &rows {
+        let number = |i: usize| row[i].parse::<f64>().unwrap();
+        assert!(number(1).abs() < 1e-8 && number(2).abs() < 1e-12 && number(3).abs() < 1e-12, "{row:?}");
+        assert!((0.0..=1.0).contains(&number(4)) && (0.0..3.0).contains(&number(5)), "{row:?}");
+    }
+    // Who is judged by a wider window is outside it for less time.
+    let wider = scratch.query(
+        "SELECT count(*) FROM control_annual AS a JOIN control_annual AS b USING (controller)
+         WHERE controller NOT LIKE 'extracted%' AND a.pmv_limit < b.pmv_limit AND a.outside_fraction < b.outside_fraction",
+    );
+    assert_eq!(wider, [["0"]]);
+    // Classes hold every mission once.
+    let sums = scratch
+        .query("SELECT DISTINCT sum(mission_count) FROM control_class GROUP BY pmv_limit, controller, sorted_by");
+    assert_eq!(sums, [["24"]]);
+}
+
+#[test]
+fn cli_a_mission_that_no_controller_can_drive_is_a_row_with_a_reason() {
+    let scratch = solved();
+    scratch.tamper(
+        "UPDATE optimum_point SET status = 2, row_check = NULL WHERE sample_id = (SELECT min(sample_id) FROM optimum_point)
+            AND design_id = (SELECT design_id FROM hvac_design WHERE name = 'hp+curtain')
+            AND window_id = (SELECT window_id FROM comfort_window WHERE pmv_limit = 1.0)",
+    );
+    // With another share to cover, all missions are driven anew.
+    scratch.edit("study.toml", "coverage = 0.9", "coverage = 0.95");
+    let run = scratch.expect(1, &["control"]);
+    assert!(run.stderr.contains("1 missions cannot be driven, the first: B183_"), "{}", run.stderr);
+    let failed = scratch.query("SELECT design, reason FROM control_failure");
+    assert_eq!(failed, [["hp+curtain", "segment 0 has no optimum: infeasible: too cold"]]);
+    assert_eq!(scratch.query("SELECT count(DISTINCT mission) FROM control"), [["23"]]);
+    let status = scratch.expect(0, &["status"]).stdout;
+    assert!(
+        status.contains("1 missions cannot be driven by controllers; the view control_failure says why"),
+        "{status}"
+    );
+}
+
+#[test]
+fn cli_driving_can_be_turned_off_and_setpoints_stay() {
+    let scratch = Scratch::small(12, "[1.0]", "[]");
+    scratch.edit("study.toml", "pmv_limits = [0.25, 0.5, 0.625, 0.75, 1.0, 1.25, 1.5, 2.0]", "pmv_limits = []");
+    scratch.expect(0, &["run"]);
+    assert_eq!(scratch.query("SELECT count(*) FROM control"), [["0"]]);
+    assert_eq!(scratch.query("SELECT count(*) FROM setpoint_profile"), [["10"]]);
+    assert_eq!(scratch.query("SELECT count(*) FROM curtain_threshold"), [["2"]]);
+    let run = scratch.expect(0, &["control"]);
+    assert!(run.stdout.contains("10 files in "), "{}", run.stdout);
 }

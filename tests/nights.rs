@@ -27,7 +27,7 @@ fn cli_status_metrics_and_log_say_how_a_run_ended() {
     let scratch = small();
     let run = scratch.expect(0, &["run", "--log", "json", "--metrics", "night.prom"]);
     let lines: Vec<serde_json::Value> = run.stderr.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
-    for stage in ["ingest", "shade", "solve", "simulate", "report"] {
+    for stage in ["ingest", "shade", "solve", "simulate", "control", "report"] {
         let line = lines.iter().find(|line| line["stage"] == stage).unwrap();
         assert!(line["run_id"] == 1 && line["duration_s"].is_f64() && line["computed"].as_u64() > Some(0), "{line}");
     }
@@ -46,7 +46,7 @@ fn cli_status_metrics_and_log_say_how_a_run_ended() {
     assert!((now - value("last_success_timestamp_seconds{study=\"demo\"}")).abs() < 600.0);
 
     let said = status(&scratch, 0);
-    assert_eq!(said["last_stages"].as_array().unwrap().len(), 5);
+    assert_eq!(said["last_stages"].as_array().unwrap().len(), 6);
     assert!(said["last_success_utc"].is_string() && said["newest_mission_utc"].is_string(), "{said}");
 
     // A run that fails says why, in the record and to the monitoring, and the last success stays.

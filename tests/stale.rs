@@ -62,7 +62,7 @@ fn cli_a_touched_weather_file_leads_each_stage_alone_to_say_what_is_stale() {
         "{}",
         ingest.stderr
     );
-    for stage in ["solve", "simulate"] {
+    for stage in ["solve", "simulate", "control"] {
         let run = scratch.expect(3, &[stage]);
         assert!(run.stderr.contains(&stale) && run.stderr.contains("run `busclimate shade` first"), "{}", run.stderr);
     }
@@ -76,15 +76,18 @@ fn cli_a_touched_weather_file_leads_each_stage_alone_to_say_what_is_stale() {
     let shade = scratch.expect(0, &["shade"]);
     assert!(shade.stderr.contains("1 new or changed"), "{}", shade.stderr);
     assert!(scratch.query(hash) != recorded);
-    let run = scratch.expect(3, &["simulate"]);
-    assert!(
-        run.stderr.contains("the optima are stale: 1 samples have none")
-            && run.stderr.contains("run `busclimate solve` first")
-    );
+    for stage in ["simulate", "control"] {
+        let run = scratch.expect(3, &[stage]);
+        assert!(
+            run.stderr.contains("the optima are stale: 1 samples have none")
+                && run.stderr.contains("run `busclimate solve` first")
+        );
+    }
     let solve = scratch.expect(0, &["solve"]);
     assert!(solve.stderr.contains("10 points computed now (1 samples × 10)"), "{}", solve.stderr);
     let simulate = scratch.expect(0, &["simulate"]);
     assert!(simulate.stderr.contains("20 missions simulated now"), "{}", simulate.stderr);
+    scratch.expect(0, &["control"]);
     let fresh = scratch.expect(0, &["report"]);
     assert!(!fresh.stderr.contains("stale"), "{}", fresh.stderr);
     assert!(report != scratch.report());

@@ -52,7 +52,7 @@ fn prop_stage_by_stage_is_the_same_as_all_at_once() {
     scratch.expect(0, &["run"]);
     let report = scratch.report();
     std::fs::remove_file(scratch.path("study.db")).unwrap();
-    for stage in ["ingest", "shade", "solve", "simulate", "report"] {
+    for stage in ["ingest", "shade", "solve", "simulate", "control", "report"] {
         scratch.expect(0, &[stage]);
     }
     assert!(report == scratch.report());

@@ -23,17 +23,22 @@ impl SimulationBasis<'_> {
     /// The key of every simulation that the study asks for: samples and optima of the mission, weather and shade in time,
     /// design, window, and how the bus behaves.
     pub fn keys(&self) -> BTreeMap<SimulationId, String> {
-        let dynamics = format!("{:?} {SIMULATION_VERSION}", self.study.dynamics);
         let mut keys = BTreeMap::new();
         for samples in &self.missions {
-            let sample_keys: Vec<&str> = samples.iter().map(|s| s.key.as_str()).collect();
-            let mission = keys::hash(&[&sample_keys.join(" "), &self.surroundings.key(span(samples)), &dynamics]);
+            let mission = self.mission_key(samples);
             for id in self.ids(samples) {
                 let key = self.key(&mission, &id);
                 keys.insert(id, key);
             }
         }
         keys
+    }
+
+    /// The key of a mission with all that its simulations share.
+    pub fn mission_key(&self, samples: &[Sample]) -> String {
+        let dynamics = format!("{:?} {SIMULATION_VERSION}", self.study.dynamics);
+        let sample_keys: Vec<&str> = samples.iter().map(|s| s.key.as_str()).collect();
+        keys::hash(&[&sample_keys.join(" "), &self.surroundings.key(span(samples)), &dynamics])
     }
 
     /// The key of a simulation of a mission whose own key is given.

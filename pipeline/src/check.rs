@@ -8,6 +8,7 @@ use std::collections::BTreeMap;
 use study::Study;
 
 use crate::budget::Budget;
+use crate::control::{controllers_at_most, own};
 use crate::in_order::in_order;
 use crate::{Inputs, PipelineError, Progress};
 
@@ -32,6 +33,8 @@ pub struct Check {
     pub replays: usize,
     /// Simulated seconds at most.
     pub simulated_s: f64,
+    /// Seconds at most that causal controllers drive.
+    pub driven_s: f64,
     /// Estimated time on two cores.
     pub seconds: f64,
     /// Estimated size of the database.
@@ -88,8 +91,14 @@ pub fn check(study: &Study, progress: &dyn Progress) -> Result<Check, PipelineEr
     check.points = check.samples as f64 * study.grid.points() as f64;
     let ways = study.grid.designs().len() * study.simulated_windows.len() * Replay::ALL.len();
     check.simulated_s = check.samples as f64 * f64::from(study.missions.segment_s) * ways as f64;
-    check.seconds =
-        check.rows as f64 / ROWS_A_SECOND + check.points / POINTS_A_SECOND + check.simulated_s / SIMULATED_A_SECOND;
+    let driven = study.control.designs.len() * controllers_at_most(study);
+    check.driven_s = check.samples as f64 * f64::from(study.missions.segment_s) * driven as f64;
+    if let Err(error) = own(study) {
+        check.errors.push(error);
+    }
+    check.seconds = check.rows as f64 / ROWS_A_SECOND
+        + check.points / POINTS_A_SECOND
+        + (check.simulated_s + check.driven_s) / SIMULATED_A_SECOND;
     check.database_bytes = check.points * BYTES_A_POINT;
     Ok(check)
 }

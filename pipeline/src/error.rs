@@ -3,6 +3,7 @@
 use chrono::{DateTime, Utc};
 use ingest::{Finding, IngestError};
 use report::ReportError;
+use setpoints::OwnError;
 use shading::ShadowError;
 use std::path::PathBuf;
 use store::StoreError;
@@ -18,9 +19,9 @@ pub enum PipelineError {
     /// Missions or weather cannot be used.
     #[error(transparent)]
     Ingest(#[from] IngestError),
-    /// The shadow file cannot be read.
+    /// A file that the study names cannot be read.
     #[error("{path}: {finding}")]
-    ShadowFile {
+    InputFile {
         /// The file.
         path: PathBuf,
         /// What is wrong with it.
@@ -33,6 +34,14 @@ pub enum PipelineError {
         path: String,
         /// What is wrong with it.
         source: ShadowError,
+    },
+    /// Setpoints of one's own cannot be used.
+    #[error("{path}: {source}")]
+    Setpoints {
+        /// The file, as the study names it.
+        path: String,
+        /// What is wrong with it.
+        source: OwnError,
     },
     /// No segment gives a sample.
     #[error("no samples: {excluded} segments are excluded, the first one: {reason}")]

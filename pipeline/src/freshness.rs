@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 use store::{RecordedStage, Store};
 use study::{Study, keys};
 
+use crate::control::own;
 use crate::record::input_hash;
 use crate::{Inputs, PROGRAM_VERSION, PipelineError};
 
@@ -83,9 +84,18 @@ pub(crate) fn simulate_key(study: &Study, inputs: &Inputs, store: &mut Store) ->
     Ok(keys::hash(&[&solve_key(study, store)?, &files.join(" "), &dynamics]))
 }
 
+/// Key of all missions under causal controllers: optima, weather and shade, which controllers, how the bus behaves.
+pub(crate) fn control_key(study: &Study, inputs: &Inputs, store: &mut Store) -> Result<String, PipelineError> {
+    let controls = format!("{:?} {SIMULATION_VERSION} {:?} {:?}", study.dynamics, study.control, own(study)?);
+    let files: Vec<String> = inputs.keys(store)?.into_values().collect();
+    Ok(keys::hash(&[&solve_key(study, store)?, &files.join(" "), &controls]))
+}
+
 /// Key of the report of a study: all that the database holds of it, and the program.
 pub(crate) fn report_key(study: &Study, inputs: &Inputs, store: &mut Store) -> Result<String, PipelineError> {
     let simulations = simulate_key(study, inputs, store)?;
+    let controls = control_key(study, inputs, store)?;
     let missing: Vec<String> = store.missing_files()?.into_iter().collect();
-    Ok(keys::hash(&[&study.hash, &simulations, &input_hash(store)?, &missing.join(" "), PROGRAM_VERSION]))
+    let inputs = input_hash(store)?;
+    Ok(keys::hash(&[&study.hash, &simulations, &controls, &inputs, &missing.join(" "), PROGRAM_VERSION]))
 }

@@ -44,7 +44,7 @@ impl<'s> Inputs<'s> {
     /// The shadow fractions and the record of their file.
     ///
     /// # Errors
-    /// [`PipelineError::ShadowFile`], [`PipelineError::Shadow`].
+    /// [`PipelineError::InputFile`], [`PipelineError::Shadow`].
     pub fn shadow(&self) -> Result<&(ShadowYear, FileRecord), PipelineError> {
         if let Some(shadow) = self.shadow.get() {
             return Ok(shadow);
@@ -125,9 +125,9 @@ const MOST_SHADOW_ROWS: usize = 87_840;
 
 fn read_shadow(study: &Study) -> Result<(ShadowYear, FileRecord), PipelineError> {
     let path = study.base.join(&study.shadow_path);
-    let content = Content::read(&path).map_err(|finding| PipelineError::ShadowFile { path: path.clone(), finding })?;
+    let content = Content::read(&path).map_err(|finding| PipelineError::InputFile { path: path.clone(), finding })?;
     check_lines(&content.bytes, b',', MOST_SHADOW_ROWS)
-        .map_err(|finding| PipelineError::ShadowFile { path: path.clone(), finding })?;
+        .map_err(|finding| PipelineError::InputFile { path: path.clone(), finding })?;
     let shadow = ShadowYear::read(content.bytes.as_slice())
         .map_err(|source| PipelineError::Shadow { path: study.shadow_path.clone(), source })?;
     let record = FileRecord {

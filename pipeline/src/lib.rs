@@ -43,7 +43,7 @@ pub use ::fetch::{FetchError, Fetched, Patience};
 pub use backup::backup;
 pub use canyon::write_canyon;
 pub use check::{Check, check};
-pub use control::{CurtainThreshold, Setpoints, control};
+pub use control::{setpoints, write_setpoints};
 pub use error::PipelineError;
 pub use files::write_whole;
 pub use freshness::Stale;
@@ -54,6 +54,7 @@ pub use progress::{Progress, Quiet, StageEnd, Work};
 pub use run::{Done, Options, Stage, run};
 pub use show::{Point, Shown, show};
 pub use status::{LastRun, LastStage, Status, Summary, status};
+pub use store::SetpointRow;
 pub use verify::{Approximation, Part, Verification, verify};
 
 /// Version of the program, as runs and reports state it.

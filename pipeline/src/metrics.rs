@@ -64,6 +64,11 @@ fn text(status: &Status) -> String {
         Some(status.unsimulated_missions as f64),
     );
     families.plain(
+        "uncontrolled_missions",
+        "Missions that causal controllers cannot drive.",
+        Some(status.uncontrolled_missions as f64),
+    );
+    families.plain(
         "newest_mission_timestamp_seconds",
         "End of the newest mission.",
         seconds(&status.newest_mission_utc),

@@ -11,6 +11,7 @@ use study::{Study, keys};
 use crate::basis::SimulationBasis;
 use crate::before::{Before, Standing};
 use crate::check::{POINTS_A_SECOND, ROWS_A_SECOND, SIMULATED_A_SECOND};
+use crate::control::controllers_at_most as controllers;
 use crate::missing::Gone;
 use crate::missions::{WeatherAndShade, missions};
 use crate::{Inputs, PipelineError, Stage, freshness, open, report};
@@ -55,8 +56,9 @@ impl Planning<'_> {
         let shade = self.shade(&ingest)?;
         let solve = self.solve(&shade)?;
         let simulate = self.simulate(&shade, &solve)?;
-        let report = self.report(&simulate)?;
-        Ok(vec![ingest, shade, solve, simulate, report])
+        let control = self.control(&shade, &solve)?;
+        let report = self.report(&simulate, &control)?;
+        Ok(vec![ingest, shade, solve, simulate, control, report])
     }
 
     /// A stage's plan with the settings that have changed since it was last done. The time is that of the last run that
@@ -249,9 +251,30 @@ impl Planning<'_> {
         Ok(basis.keys().iter().filter(|(id, key)| !is_known(id, key)).count() as u64)
     }
 
-    fn report(&mut self, simulate: &StagePlan) -> Result<StagePlan, PipelineError> {
+    /// Whatever changes an optimum changes the profiles, and with them all missions.
+    fn control(&mut self, shade: &StagePlan, solve: &StagePlan) -> Result<StagePlan, PipelineError> {
+        let study = self.study;
         let mut why = Vec::new();
-        if !simulate.why.is_empty() {
+        if !solve.why.is_empty() {
+            why.push("optima are computed or withdrawn before, from which the setpoints are".to_owned());
+        } else if shade.why.is_empty() {
+            let key = freshness::control_key(study, &self.inputs, self.store)?;
+            if self.store.stage(RecordedStage::Control)?.is_none_or(|record| record.key != key) {
+                why.push("the setpoints are not of these optima and this study".to_owned());
+            }
+        }
+        let mut to_drive = 0;
+        if !why.is_empty() && !study.control.windows.is_empty() {
+            let missions = missions(self.store.samples()?).len() as u64 + self.new_samples.div_ceil(SAMPLES_A_MISSION);
+            to_drive = missions * study.control.designs.len() as u64;
+        }
+        let seconds = to_drive as f64 * controllers(study) as f64 * MISSION_S / SIMULATED_A_SECOND;
+        self.planned(Stage::Control, to_drive, seconds, why)
+    }
+
+    fn report(&mut self, simulate: &StagePlan, control: &StagePlan) -> Result<StagePlan, PipelineError> {
+        let mut why = Vec::new();
+        if !simulate.why.is_empty() || !control.why.is_empty() {
             why.push("what it shows is computed before".to_owned());
         } else if let Some(reason) = report::why_renewed(self.study, &self.inputs, self.store)? {
             why.push(reason.to_owned());

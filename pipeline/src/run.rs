@@ -8,8 +8,8 @@ use study::{Study, keys};
 use crate::lock::RunLock;
 use crate::record::{input_hash, now};
 use crate::{
-    Inputs, PROGRAM_VERSION, PipelineError, Progress, StageEnd, Summary, Work, freshness, ingest, metrics, news, open,
-    optima, report, samples, simulations,
+    Inputs, PROGRAM_VERSION, PipelineError, Progress, StageEnd, Summary, Work, control, freshness, ingest, metrics,
+    news, open, optima, report, samples, simulations,
 };
 
 /// One step of a run; each one builds on what the steps before it have stored.
@@ -23,13 +23,15 @@ pub enum Stage {
     Solve,
     /// Optima driven second by second.
     Simulate,
+    /// Optima into setpoints, and missions driven by them.
+    Control,
     /// Rows into tables and figures.
     Report,
 }
 
 impl Stage {
     /// All of them in their order.
-    pub const ALL: [Self; 5] = [Self::Ingest, Self::Shade, Self::Solve, Self::Simulate, Self::Report];
+    pub const ALL: [Self; 6] = [Self::Ingest, Self::Shade, Self::Solve, Self::Simulate, Self::Control, Self::Report];
 
     /// The name of its command.
     #[must_use]
@@ -39,6 +41,7 @@ impl Stage {
             Self::Shade => "shade",
             Self::Solve => "solve",
             Self::Simulate => "simulate",
+            Self::Control => "control",
             Self::Report => "report",
         }
     }
@@ -122,6 +125,9 @@ pub fn run(study: &Study, stages: &[Stage], options: &Options, progress: &dyn Pr
     if let Some(failed) = &summary.first_unsimulated {
         progress.warn(&format!("{} missions are not simulated, the first: {failed}", summary.unsimulated));
     }
+    if let Some(failed) = &summary.first_uncontrolled {
+        progress.warn(&format!("{} missions cannot be driven, the first: {failed}", summary.uncontrolled));
+    }
     news.iter().for_each(|line| progress.warn(line));
     outcome?;
     Ok(Done { run_id, summary, headline: running.headline, news })
@@ -171,6 +177,7 @@ impl Running<'_> {
                 None => optima::solve(study, store, progress),
             },
             Stage::Simulate => simulations::simulate(study, inputs, store, progress),
+            Stage::Control => control::control(study, inputs, store, progress),
             Stage::Report => {
                 let reported = if self.run_id.is_none() {
                     report::say_stale(study, inputs, store, progress)?;

@@ -23,6 +23,10 @@ pub struct Summary {
     pub unsimulated: usize,
     /// The first of them, with the reason.
     pub first_unsimulated: Option<String>,
+    /// Missions that controllers cannot drive, with a design each.
+    pub uncontrolled: usize,
+    /// The first of them, with the reason.
+    pub first_uncontrolled: Option<String>,
 }
 
 impl Summary {
@@ -42,6 +46,8 @@ impl Summary {
             let (low, high) = (f.window.pmv_min(), f.window.pmv_max());
             format!("{} with {} at PMV {low} … {high}: {}", f.mission, f.design, f.reason)
         };
+        let uncontrolled = store.control_failures()?;
+        let control_line = |[mission, design, reason]: &[String; 3]| format!("{mission} with {design}: {reason}");
         let first_replaced = replaced.first().map(|f| said(f, f.replaced()));
         let replaced = replaced.len();
         Ok(Self {
@@ -51,6 +57,8 @@ impl Summary {
             first_replaced,
             unsimulated: failures.len(),
             first_unsimulated: failures.first().map(line),
+            uncontrolled: uncontrolled.len(),
+            first_uncontrolled: uncontrolled.first().map(control_line),
         })
     }
 
@@ -60,10 +68,11 @@ impl Summary {
         self.counts.points.saturating_sub(self.counts.solved + self.counts.failed)
     }
 
-    /// Whether every point has an optimum, every input is used as it is and every mission simulated.
+    /// Whether every point has an optimum, every input is used as it is and every mission simulated and driven.
     #[must_use]
     pub fn is_complete(&self) -> bool {
-        self.counts.failed == 0 && self.refused.is_empty() && self.replaced == 0 && self.unsimulated == 0
+        let all_driven = self.unsimulated == 0 && self.uncontrolled == 0;
+        self.counts.failed == 0 && self.refused.is_empty() && self.replaced == 0 && all_driven
     }
 }
 
@@ -110,6 +119,10 @@ pub struct Status {
     pub simulated_missions: usize,
     /// Those that cannot be simulated.
     pub unsimulated_missions: usize,
+    /// Missions driven by causal controllers: mission × design.
+    pub controlled_missions: usize,
+    /// Those that cannot be driven.
+    pub uncontrolled_missions: usize,
     /// Months without samples, 1 … 12.
     pub missing_months: Vec<u8>,
     /// Refused files with the reason.
@@ -232,6 +245,8 @@ pub(crate) fn status_of(study: &Study, store: &mut Store) -> Result<Status, Pipe
         pending: summary.counts.points.saturating_sub(counts.solved + counts.infeasible + counts.not_converged),
         simulated_missions: store.simulation_keys(&grid)?.len() - summary.unsimulated,
         unsimulated_missions: summary.unsimulated,
+        controlled_missions: store.control_keys(&grid)?.len() - summary.uncontrolled,
+        uncontrolled_missions: summary.uncontrolled,
         missing_months: (1..=12).filter(|m| !months.iter().any(|row| row.month == *m)).collect(),
         refused_files: summary.refused,
         last_run: store.last_run()?.map(LastRun::from),

@@ -27,7 +27,8 @@ pub(crate) fn trace(
     let stored = store.trace_keys()?;
     let (mut rows, mut kept) = (Vec::new(), Vec::new());
     for (i, label) in LABELS.into_iter().enumerate() {
-        let (Some(samples), Some(window)) = (chosen(&basis.missions, i), shown_window(basis.study, PAPER_LIMITS[i]))
+        let (Some(samples), Some(window)) =
+            (shown_mission(&basis.missions, label), shown_window(basis.study, PAPER_LIMITS[i]))
         else {
             continue;
         };
@@ -75,7 +76,9 @@ fn row(
     }))
 }
 
-fn chosen(missions: &[Vec<Sample>], which: usize) -> Option<&Vec<Sample>> {
+/// The mission that stands for a `cold` or a `hot` day.
+pub(crate) fn shown_mission<'m>(missions: &'m [Vec<Sample>], label: &str) -> Option<&'m Vec<Sample>> {
+    let which = usize::from(label == LABELS[1]);
     if let Some(own) = missions.iter().find(|m| m[0].segment.mission == PAPER[which]) {
         return Some(own);
     }

@@ -19,6 +19,12 @@ pub struct Curve {
 }
 
 impl Curve {
+    /// The same setpoint at all ambient temperatures, in °C.
+    #[must_use]
+    pub fn constant(setpoint_c: f64) -> Self {
+        Self { shape: Shape::Quadratic([setpoint_c, 0.0, 0.0]), valid_c: [0.0, 0.0] }
+    }
+
     /// Linear between pairs of ambient and cabin temperature in °C, in rising order; one pair is a constant. `None` without any.
     #[must_use]
     pub fn through(pairs: &[(f64, f64)]) -> Option<Self> {

@@ -10,13 +10,17 @@
 mod analytic;
 mod basis;
 mod curve;
+mod extract;
 mod fit;
+mod own;
 mod profile;
 mod published;
 mod threshold;
 
 pub use analytic::curtain_threshold_k;
 pub use curve::{Curve, Shape};
+pub use extract::{CurtainThreshold, HeaterThreshold, Hour, Setpoints, extract};
+pub use own::{Own, OwnError};
 pub use profile::{Edge, FitError, Point, Profile, fit};
 pub use published::{Published, published};
 pub use threshold::{Switch, Threshold, threshold};

@@ -1,12 +1,13 @@
 //! Averages of the last complete stage: renewed in the transaction that completes it, so that readers never see one of a
 //! half-computed study. Sums go by missions and months, not by the ids of rows, which tell in what order things came.
 
+use sqlx::Row;
 use sqlx::sqlite::SqliteConnection;
 
 use crate::checks::{commit, seal_averages};
 use crate::row::begin;
 use crate::stages::{RecordedStage, StageRecord, record_stage};
-use crate::{Store, StoreError};
+use crate::{ControlTrace, SetpointRow, Store, StoreError, control_views, setpoints};
 
 /// The months whose samples, designs or windows have changed.
 const MONTHLY: &str = "INSERT INTO monthly_average
@@ -186,6 +187,79 @@ JOIN hvac_design AS d USING (design_id)
 JOIN comfort_window AS w USING (window_id)
 GROUP BY m.design_id, m.window_id, m.class_order";
 
+/// Months by their days, within a month every second alike, for votes every passenger-second.
+const CONTROL_ANNUAL: &str = "INSERT INTO control_annual
+WITH monthly AS (
+    SELECT
+        design_id,
+        window_id,
+        controller,
+        month,
+        sum(mean_hvac_power_w * seconds ORDER BY mission) / sum(seconds) AS power_w,
+        sum(static_mean_hvac_power_w * seconds ORDER BY mission) / sum(seconds) AS static_w,
+        sum(saturated_fraction * seconds ORDER BY mission) / sum(seconds) AS saturated_fraction,
+        sum(passenger_hours ORDER BY mission) AS hours,
+        sum(passenger_hours_outside ORDER BY mission) AS hours_outside,
+        sum(mean_abs_pmv * passenger_hours ORDER BY mission)
+            / nullif(sum(passenger_hours ORDER BY mission), 0.0) AS abs_pmv,
+        sum(static_mean_abs_pmv * passenger_hours ORDER BY mission)
+            / nullif(sum(passenger_hours ORDER BY mission), 0.0) AS static_abs_pmv,
+        count(*) AS mission_count
+    FROM controlled_mission
+    GROUP BY design_id, window_id, controller, month
+)
+SELECT
+    d.name,
+    w.pmv_limit,
+    w.pmv_min,
+    w.pmv_max,
+    m.controller,
+    sum(m.power_w * n.days ORDER BY month) / sum(n.days),
+    sum(m.static_w * n.days ORDER BY month) / sum(n.days),
+    sum(m.abs_pmv * n.days ORDER BY month) / sum(CASE WHEN m.abs_pmv IS NOT NULL THEN n.days END),
+    sum(m.static_abs_pmv * n.days ORDER BY month) / sum(CASE WHEN m.static_abs_pmv IS NOT NULL THEN n.days END),
+    sum(m.hours ORDER BY month),
+    sum(m.hours_outside ORDER BY month),
+    sum(m.hours_outside / nullif(m.hours, 0.0) * n.days ORDER BY month) / sum(CASE WHEN m.hours > 0.0 THEN n.days END),
+    sum(m.saturated_fraction * n.days ORDER BY month) / sum(n.days),
+    sum(m.mission_count),
+    coalesce((SELECT max(run_id) FROM run), 0)
+FROM monthly AS m
+JOIN month_weight AS n USING (month)
+JOIN hvac_design AS d USING (design_id)
+JOIN comfort_window AS w USING (window_id)
+GROUP BY m.design_id, m.window_id, m.controller";
+
+const CONTROL_CLASS: &str = "INSERT INTO control_class
+WITH classed AS (
+    SELECT *, 'month' AS sorted_by, month AS place, printf('%02d', month) AS class FROM controlled_mission
+    UNION ALL
+    SELECT *, 'ambient temperature in °C', CAST((ambient_k - 273.15) / 5 + 100 AS INTEGER),
+        printf('%d … %d', 5 * (CAST((ambient_k - 273.15) / 5 + 100 AS INTEGER) - 100),
+            5 * (CAST((ambient_k - 273.15) / 5 + 100 AS INTEGER) - 99))
+    FROM controlled_mission
+)
+SELECT
+    d.name,
+    w.pmv_limit,
+    w.pmv_min,
+    w.pmv_max,
+    c.controller,
+    c.sorted_by,
+    c.class,
+    c.place,
+    sum(c.mean_hvac_power_w * c.seconds ORDER BY mission) / sum(c.seconds),
+    sum(c.static_mean_hvac_power_w * c.seconds ORDER BY mission) / sum(c.seconds),
+    sum(c.mean_abs_pmv * c.passenger_hours ORDER BY mission) / nullif(sum(c.passenger_hours ORDER BY mission), 0.0),
+    sum(c.static_mean_abs_pmv * c.passenger_hours ORDER BY mission) / nullif(sum(c.passenger_hours ORDER BY mission), 0.0),
+    sum(c.passenger_hours_outside ORDER BY mission) / nullif(sum(c.passenger_hours ORDER BY mission), 0.0),
+    count(*),
+    coalesce((SELECT max(run_id) FROM run), 0)
+FROM classed AS c
+JOIN hvac_design AS d USING (design_id)
+JOIN comfort_window AS w USING (window_id)
+GROUP BY c.design_id, c.window_id, c.controller, c.place";
+
 impl Store {
     /// Completes the optima: renews the averages of the months that have changed, and records the stage.
     ///
@@ -219,6 +293,33 @@ impl Store {
             "DELETE FROM stale_simulation_month",
         ];
         self.complete(RecordedStage::Simulate, record, &renew)
+    }
+
+    /// Completes the missions under controllers: renews the setpoints that they follow, what they come to in the year and by
+    /// class, and the mission that is shown in time, and records the stage.
+    ///
+    /// # Errors
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
+    pub fn complete_controls(
+        &mut self,
+        record: &StageRecord,
+        rows: &[SetpointRow],
+        traces: &[ControlTrace],
+    ) -> Result<(), StoreError> {
+        let renew = ["DELETE FROM control_annual", CONTROL_ANNUAL, "DELETE FROM control_class", CONTROL_CLASS];
+        self.drive(async |c| {
+            let mut tx = begin(c).await?;
+            let run_id =
+                sqlx::query("SELECT coalesce(max(run_id), 0) FROM run").fetch_one(&mut *tx).await?.try_get(0)?;
+            setpoints::put(&mut tx, run_id, rows).await?;
+            control_views::put_traces(&mut tx, run_id, traces).await?;
+            for sql in renew {
+                execute(&mut tx, sql).await?;
+            }
+            seal_averages(&mut tx).await?;
+            record_stage(&mut tx, RecordedStage::Control, record).await?;
+            commit(tx).await
+        })
     }
 
     fn complete(

@@ -15,7 +15,7 @@ type Table = (&'static str, &'static [&'static str]);
 
 /// Tables whose rows get their check when the transaction that wrote them ends. Optima get theirs
 /// while they are inserted.
-const SEALED: [Table; 13] = [
+const SEALED: [Table; 15] = [
     ("source_file", &["source_file_id"]),
     ("data_quality", &["source_file_id", "position"]),
     ("excluded_segment", &["mission", "segment"]),
@@ -27,20 +27,31 @@ const SEALED: [Table; 13] = [
     ("comfort_window", &["window_id"]),
     SIMULATED,
     ("unsimulated_mission", &["source_file_id", "design_id", "window_id"]),
+    ("controlled_mission_key", &["source_file_id", "design_id"]),
+    CONTROLLED,
     ("mission_trace", &["trace_id"]),
     ("trace_minute", &["trace_id", "minute"]),
 ];
 const SIMULATED: Table = ("simulated_mission", &["source_file_id", "design_id", "window_id", "controller"]);
+const CONTROLLED: Table = ("controlled_mission", &["source_file_id", "design_id", "window_id", "controller"]);
 const OPTIMA: Table = ("optimum_point", &["sample_id", "design_id", "window_id"]);
 /// Tables of averages, with their keys.
-const AVERAGES: [(&str, &str); 6] = [
+const AVERAGES: [(&str, &str); 12] = [
     ("simulation_month", "design_id, window_id, controller, month"),
     ("simulation_class_month", "design_id, window_id, class_order, month"),
     ("monthly_average", "design, pmv_min, pmv_max, month"),
     ("annual_average", "design, pmv_min, pmv_max"),
     ("simulation_annual", "design, pmv_min, pmv_max, controller"),
     ("simulation_class", "design, pmv_min, pmv_max, class_order"),
+    ("setpoint_profile", "design, pmv_min, pmv_max, mode"),
+    ("curtain_threshold", "design, pmv_min, pmv_max, mode"),
+    ("heater_threshold", "design, pmv_min, pmv_max"),
+    ("control_annual", "design, pmv_min, pmv_max, controller"),
+    ("control_class", "design, pmv_min, pmv_max, controller, class_order"),
+    ("control_trace", "design, pmv_min, pmv_max, controller, minute"),
 ];
+/// Rows that get their checks in one statement.
+const SEALED_AT_ONCE: usize = 256;
 /// Rows between two questions whether to stop.
 const ROWS: u64 = 10_000;
 
@@ -144,17 +155,23 @@ pub(crate) async fn commit(mut tx: Transaction<'_, Sqlite>) -> Result<(), StoreE
     let mut hash = RowHash::default();
     for (table, key) in SEALED {
         let rows = select(&mut tx, format!("SELECT * FROM {table} WHERE row_check IS NULL")).await?;
-        let places = key.iter().map(|column| format!("{column} = ?")).collect::<Vec<_>>().join(" AND ");
-        let sql = format!("UPDATE {table} SET row_check = ? WHERE {places}");
-        for row in &rows {
-            hash.row(row)?;
+        let same = |(n, column): (usize, &&str)| format!("{table}.{column} = v.column{}", n + 2);
+        let places = key.iter().enumerate().map(same).collect::<Vec<_>>().join(" AND ");
+        // Statement by statement, a row would take longer than to be computed.
+        for rows in rows.chunks(SEALED_AT_ONCE) {
+            let values = vec![format!("(?{})", ",?".repeat(key.len())); rows.len()].join(",");
             // The text is built from constants alone.
-            let mut update = sqlx::query(AssertSqlSafe(sql.clone())).bind(hash.finish());
-            for column in key {
-                update = match *column {
-                    "controller" | "mission" | "stage" => update.bind(row.try_get::<String, _>(*column)?),
-                    _ => update.bind(row.try_get::<i64, _>(*column)?),
-                };
+            let sql = format!("UPDATE {table} SET row_check = v.column1 FROM (VALUES {values}) AS v WHERE {places}");
+            let mut update = sqlx::query(AssertSqlSafe(sql));
+            for row in rows {
+                hash.row(row)?;
+                update = update.bind(hash.finish());
+                for column in key {
+                    update = match *column {
+                        "controller" | "mission" | "stage" => update.bind(row.try_get::<String, _>(*column)?),
+                        _ => update.bind(row.try_get::<i64, _>(*column)?),
+                    };
+                }
             }
             update.execute(&mut *tx).await?;
         }
@@ -240,6 +257,14 @@ impl Store {
         let of_stale_months = "SELECT * FROM simulated_mission
             WHERE month IN (SELECT month FROM stale_simulation_month)";
         self.refuse_damaged(SIMULATED, of_stale_months, stop)
+    }
+
+    /// Refuses missions under controllers where one is not as it was written; ends early where `stop` says so.
+    ///
+    /// # Errors
+    /// [`StoreError::Damaged`], [`StoreError::Refused`].
+    pub fn check_controls(&mut self, stop: &dyn Fn() -> bool) -> Result<(), StoreError> {
+        self.refuse_damaged(CONTROLLED, "SELECT * FROM controlled_mission", stop)
     }
 
     fn refuse_damaged(&mut self, table: Table, sql: &str, stop: &dyn Fn() -> bool) -> Result<(), StoreError> {

@@ -7,6 +7,8 @@
 mod averages;
 mod checks;
 mod connection;
+mod control_views;
+mod controls;
 mod error;
 mod files;
 mod grid;
@@ -15,14 +17,18 @@ mod optima;
 mod row;
 mod runs;
 mod samples;
+mod setpoints;
 mod simulations;
 mod stages;
 mod traces;
 mod verification;
 mod views;
 
+pub use self::setpoints::SetpointRow;
 pub use checks::Checked;
 pub use connection::{Store, lock_path};
+pub use control_views::{ControlClass, ControlMinute, ControlPoint, ControlTrace, ControlYear};
+pub use controls::{ControlId, ControlRow, ControlledMission};
 pub use error::StoreError;
 pub use files::KnownFile;
 pub use grid::{DesignRow, GridChange, StoredGrid};

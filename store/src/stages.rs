@@ -15,6 +15,8 @@ pub enum RecordedStage {
     Solve,
     /// The simulations of all missions.
     Simulate,
+    /// All missions under causal controllers.
+    Control,
     /// The files of the report.
     Report,
 }
@@ -25,6 +27,7 @@ impl RecordedStage {
         match self {
             Self::Solve => "solve",
             Self::Simulate => "simulate",
+            Self::Control => "control",
             Self::Report => "report",
         }
     }

@@ -117,6 +117,22 @@ pub fn assumptions(study: &Study) -> Vec<Assumption> {
             false,
         );
     }
+    if !study.control.windows.is_empty() {
+        let coverage = format!("at least {} of the hours in a mode", study.control.coverage);
+        add("coverage of setpoint profiles", coverage, "the paper does not say how far its fits lie at the edge", true);
+        add(
+            "one setpoint for heating and cooling",
+            "a mode begins 2 K on its wrong side".to_owned(),
+            "the sources of published setpoints do not say how they keep the modes apart; varied in docs/control.md",
+            true,
+        );
+        add(
+            "air curtains of causal controllers",
+            "off while the air unit is at rest".to_owned(),
+            "the paper gives thresholds for heating and cooling only",
+            true,
+        );
+    }
     let changed = [changed_constants(v), changed_constants(&study.dynamics)].concat();
     if !changed.is_empty() {
         add("constants that differ from the paper's bus", changed.join(", "), "the study file", false);

@@ -39,6 +39,8 @@ pub struct StudyFile {
     #[serde(default)]
     pub simulation: Simulation,
     #[serde(default)]
+    pub control: Control,
+    #[serde(default)]
     pub dynamics: Dynamics,
     #[serde(default = "default_designs", deserialize_with = "in_file_order")]
     pub designs: Vec<(String, Design)>,
@@ -167,6 +169,29 @@ impl Default for Simulation {
     /// The five levels of the paper's validation.
     fn default() -> Self {
         Self { pmv_limits: vec![0.0, 0.5, 1.0, 1.5, 2.0] }
+    }
+}
+
+/// Which controllers drive every mission, and how they are judged.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Control {
+    pub pmv_limits: Vec<f64>,
+    pub designs: Option<Vec<String>>,
+    pub coverage: f64,
+    #[serde(deserialize_with = "in_file_order")]
+    pub profiles: Vec<(String, String)>,
+}
+
+impl Default for Control {
+    /// From nearly neutral to the widest of the paper's windows.
+    fn default() -> Self {
+        Self {
+            pmv_limits: vec![0.25, 0.5, 0.625, 0.75, 1.0, 1.25, 1.5, 2.0],
+            designs: None,
+            coverage: 0.98,
+            profiles: Vec::new(),
+        }
     }
 }
 
@@ -311,7 +336,7 @@ fn in_file_order<'de, D: Deserializer<'de>, T: Deserialize<'de>>(source: D) -> R
         type Value = Vec<(String, T)>;
 
         fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-            f.write_str("tables such as [designs.\"hp\"]")
+            f.write_str("a table of names")
         }
 
         fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {

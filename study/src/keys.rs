@@ -88,7 +88,7 @@ fn values(settings: &[Setting]) -> String {
     settings.iter().map(|(_, value)| value.as_str()).collect::<Vec<_>>().join(" ")
 }
 
-/// What study file and program say that enters the keys of a stage (`ingest`, `shade`, `solve`, `simulate`), by name: two of
+/// What study file and program say that enters the keys of a stage (`ingest`, `shade`, `solve`, `simulate`, `control`), by name: two of
 /// them tell what has changed. Nothing for another stage.
 #[must_use]
 pub fn settings(study: &Study, stage: &str) -> BTreeMap<String, String> {
@@ -118,6 +118,17 @@ pub fn settings(study: &Study, stage: &str) -> BTreeMap<String, String> {
         "simulate" => {
             let mut settings = flattened("dynamics", &study.dynamics);
             settings.insert("simulation".to_owned(), windows(&mut study.simulated_windows.iter().copied()));
+            settings
+        }
+        "control" => {
+            let control = &study.control;
+            let designs: Vec<&str> = control.designs.iter().map(|d| study.design_rows[*d].name.as_str()).collect();
+            let profiles: Vec<String> = control.profiles.iter().map(|(name, path)| format!("{name}: {path}")).collect();
+            let mut settings = flattened("dynamics", &study.dynamics);
+            settings.insert("control.pmv_limits".to_owned(), windows(&mut control.windows.iter().copied()));
+            settings.insert("control.designs".to_owned(), designs.join(", "));
+            settings.insert("control.coverage".to_owned(), control.coverage.to_string());
+            settings.insert("control.profiles".to_owned(), profiles.join(", "));
             settings
         }
         _ => return BTreeMap::new(),

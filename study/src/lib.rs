@@ -72,6 +72,8 @@ pub struct Study {
     pub dynamics: Dynamics,
     /// Indices of the windows in the grid that are simulated.
     pub simulated_windows: Vec<usize>,
+    /// Which controllers drive every mission.
+    pub control: Control,
     /// Designs and comfort windows.
     pub grid: Grid,
     /// The grid's designs as the database keeps them.
@@ -80,6 +82,19 @@ pub struct Study {
     pub method: Method,
     /// BLAKE3 of the study with all defaults, without the places of its results.
     pub hash: String,
+}
+
+/// Which controllers drive every mission, and how they are judged.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Control {
+    /// Indices of the windows in the grid whose profiles are driven, and by which every controller is judged.
+    pub windows: Vec<usize>,
+    /// Indices of the designs in the grid that are driven.
+    pub designs: Vec<usize>,
+    /// Share of the hours in a mode whose comfort a profile keeps, 0.5 … 1.
+    pub coverage: f64,
+    /// Setpoints of one's own: name and file.
+    pub profiles: Vec<(String, String)>,
 }
 
 impl Study {
@@ -136,6 +151,7 @@ impl Study {
         let simulated = |w: &ComfortWindow| file.simulation.pmv_limits.contains(&w.pmv_limit());
         let simulated_windows = (0..grid.windows().len()).filter(|&i| simulated(&grid.windows()[i])).collect();
 
+        let control = ready::control(&file.control, &grid)?;
         let [mission_sources, weather_sources] = sources::sources(file, &base)?;
         let study = Self {
             name: file.name.clone(),
@@ -160,6 +176,7 @@ impl Study {
             vehicle: file.vehicle.clone(),
             dynamics: file.dynamics,
             simulated_windows,
+            control,
             grid,
             design_rows,
             hash: keys::study_hash(file),

@@ -3,9 +3,11 @@
 use cabin::{ComfortWindow, Cop, Design, Devices, Heating, named_cooling_cops, named_heating_cops};
 use ingest::mission::{Door, MissionFormat, MissionOptions, TelemetryMap, Vehicle};
 use ingest::weather::{Clock, ColumnMap, IrradianceUnit, TemperatureUnit, TimeLabel, WeatherFormat};
-use solve::Method;
+use setpoints::published;
+use solve::{Grid, Method};
 use store::DesignRow;
 
+use crate::Control;
 use crate::file;
 use crate::keys::canonical;
 
@@ -54,7 +56,7 @@ pub(crate) fn mission_format(missions: &file::Missions) -> Result<MissionFormat,
         };
     }
     let needed = |name: &str| format!("[missions] format = \"csv\" needs {name}");
-    let one_of = |a: &str, b: &str| format!("[missions] has both {a} and {b}; remove one of them");
+    let not_both = |a: &str, b: &str| format!("[missions] has both {a} and {b}; remove one of them");
     let (hold_s, cut_gap_s) = (m.hold_s.unwrap_or(60), m.cut_gap_s.unwrap_or(900));
     for (name, value) in [("hold_s", hold_s), ("cut_gap_s", cut_gap_s)] {
         if !(1..=86_400).contains(&value) {
@@ -68,14 +70,14 @@ pub(crate) fn mission_format(missions: &file::Missions) -> Result<MissionFormat,
             (Some(column), None) => Vehicle::Column(column.clone()),
             (None, Some(number)) => Vehicle::Number(number),
             (None, None) => return Err(needed("vehicle_column, or vehicle = NUMBER")),
-            (Some(_), Some(_)) => return Err(one_of("vehicle_column", "vehicle")),
+            (Some(_), Some(_)) => return Err(not_both("vehicle_column", "vehicle")),
         },
         passengers_column: m.passengers_column.clone().ok_or_else(|| needed("passengers_column"))?,
         door: match (&m.door_column, &m.door_share_column) {
             (Some(column), None) => Door::Flag(column.clone()),
             (None, Some(column)) => Door::Share(column.clone()),
             (None, None) => return Err(needed("door_column or door_share_column")),
-            (Some(_), Some(_)) => return Err(one_of("door_column", "door_share_column")),
+            (Some(_), Some(_)) => return Err(not_both("door_column", "door_share_column")),
         },
         speed_column: m.speed_column.clone(),
         speed_unit_m_s: factor("speed_unit", m.speed_unit.as_deref(), &[("m/s", 1.0), ("km/h", 1.0 / 3.6)])?,
@@ -233,6 +235,35 @@ fn cop(
             Ok((curve, name.to_owned()))
         }
     }
+}
+
+/// Which controllers drive every mission.
+pub(crate) fn control(typed: &file::Control, grid: &Grid) -> Result<Control, String> {
+    if !(0.5..=1.0).contains(&typed.coverage) {
+        return Err(format!("[control] coverage = {} must lie between 0.5 and 1", typed.coverage));
+    }
+    let place = |name: &String| {
+        let names: Vec<&str> = grid.designs().iter().map(|d| d.name.as_str()).collect();
+        let error = || format!("[control] designs: {name:?} is not one of the study's: {}", names.join(", "));
+        names.iter().position(|known| known == name).ok_or_else(error)
+    };
+    let designs = match &typed.designs {
+        Some(names) => names.iter().map(place).collect::<Result<Vec<_>, _>>()?,
+        None => vec![grid.designs().len() - 1],
+    };
+    for (name, _) in &typed.profiles {
+        let known = published();
+        if name.is_empty() || name.starts_with("extracted") || known.iter().any(|p| p.name == name) {
+            return Err(format!("[control] profiles: {name:?} is the name of other setpoints; take another one"));
+        }
+    }
+    let is_driven = |i: &usize| typed.pmv_limits.contains(&grid.windows()[*i].pmv_limit());
+    Ok(Control {
+        windows: (0..grid.windows().len()).filter(is_driven).collect(),
+        designs,
+        coverage: typed.coverage,
+        profiles: typed.profiles.clone(),
+    })
 }
 
 /// How old the newest file of a section may be.

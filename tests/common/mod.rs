@@ -15,7 +15,7 @@ use store::Store;
 use tempfile::TempDir;
 
 /// All that a database says of a study, but for when and by which run.
-pub const CONTENT: [&str; 15] = [
+pub const CONTENT: [&str; 23] = [
     "SELECT * FROM sample",
     "SELECT * FROM optimum",
     "SELECT design, pmv_min, pmv_max, month, hvac_power_w, heating_power_w, cooling_power_w, sample_count, unsolved_count,
@@ -31,6 +31,21 @@ pub const CONTENT: [&str; 15] = [
         warm_start_power_w, mean_max_abs_pmv_15min, saturated_fraction FROM simulation_class",
     "SELECT * FROM simulation_failure",
     "SELECT * FROM simulation_trace",
+    "SELECT * FROM control",
+    "SELECT * FROM control_failure",
+    "SELECT design, pmv_limit, pmv_min, pmv_max, mode, kind, parameters, valid_from_ambient_c, valid_to_ambient_c,
+        coverage, hour_count, reason FROM setpoint_profile",
+    "SELECT design, pmv_limit, pmv_min, pmv_max, mode, threshold_k, analytic_threshold_k, misclassified_weight
+        FROM curtain_threshold",
+    "SELECT design, pmv_limit, pmv_min, pmv_max, below_ambient_c, misclassified_weight, heater_temperature_c
+        FROM heater_threshold",
+    "SELECT design, pmv_limit, pmv_min, pmv_max, controller, mean_hvac_power_w, static_mean_hvac_power_w, mean_abs_pmv,
+        static_mean_abs_pmv, passenger_hours, passenger_hours_outside, outside_fraction, saturated_fraction,
+        mission_count FROM control_annual",
+    "SELECT design, pmv_limit, pmv_min, pmv_max, controller, sorted_by, class, class_order, mean_hvac_power_w,
+        static_mean_hvac_power_w, mean_abs_pmv, static_mean_abs_pmv, outside_fraction, mission_count FROM control_class",
+    "SELECT design, pmv_min, pmv_max, controller, mission, minute, ambient_temperature_c, setpoint_c,
+        cabin_temperature_c, pmv, pmv_15min, air_unit_power_w, hvac_power_w FROM control_trace",
     "SELECT * FROM excluded_segment",
     "SELECT path, kind, blake3, bytes, rows, first_utc, last_utc, outcome, reading_key FROM source_file",
     "SELECT f.path, q.kind, q.count, q.line, q.column_name, q.message, q.position

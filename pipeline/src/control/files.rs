@@ -2,13 +2,15 @@
 
 use cabin::OperatingMode;
 use serde::Serialize;
-use setpoints::{Profile, Shape, Threshold, published};
+use setpoints::{CurtainThreshold, HeaterThreshold, Profile, Shape, published};
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::path::Path;
+use store::SetpointRow;
 use study::Study;
 
-use super::{CurtainThreshold, Setpoints};
-use crate::{PROGRAM_VERSION, PipelineError, write_whole};
+use crate::record::input_hash;
+use crate::{PROGRAM_VERSION, PipelineError, open, write_whole};
 
 /// A file of setpoints, as it stands in TOML.
 #[derive(Serialize)]
@@ -58,36 +60,43 @@ struct Curtain {
 struct Heaters {
     on_below_ambient_c: f64,
     misclassified: f64,
+    temperature_c: f64,
 }
 
-/// Writes all of them; files of the same names are replaced.
-pub(super) fn write(
-    study: &Study,
-    inputs: &str,
-    coverage: f64,
-    all: &[Setpoints],
-    folder: &Path,
-) -> Result<(), PipelineError> {
+/// Writes setpoints that the database holds to a folder, a TOML and a CSV for each design and window, and what others have
+/// published beside them; files of the same names are replaced.
+///
+/// # Errors
+/// [`PipelineError::Request`] where two designs would have the same files; [`PipelineError::Write`], [`PipelineError::Store`].
+pub fn write_setpoints(study: &Study, all: &[SetpointRow], folder: &Path) -> Result<(), PipelineError> {
+    let mut store = open::for_reading(study)?;
+    let inputs = input_hash(&mut store)?;
+    store.close()?;
     let failed = |source| PipelineError::Write { path: folder.to_owned(), source };
     std::fs::create_dir_all(folder).map_err(failed)?;
-    for of in all {
-        let name = format!("{}_pmv_{}_{}", file_name(&of.design), of.window.pmv_min(), of.window.pmv_max());
+    let mut names = BTreeSet::new();
+    for SetpointRow { design, window, setpoints } in all {
+        let name = format!("{}_pmv_{}_{}", file_name(design), window.pmv_min(), window.pmv_max());
+        if !names.insert(name.clone()) {
+            let twice = format!("two designs would both write {name}.toml; name them apart by letters or digits");
+            return Err(PipelineError::Request(twice));
+        }
         let setup = Setup {
-            design: &of.design,
-            pmv_min: of.window.pmv_min(),
-            pmv_max: of.window.pmv_max(),
+            design,
+            pmv_min: window.pmv_min(),
+            pmv_max: window.pmv_max(),
             program_version: PROGRAM_VERSION,
             study_hash: &study.hash,
-            input_hash: inputs,
-            asked_coverage: coverage,
-            heating: of.heating.as_ref().ok().map(curve),
-            cooling: of.cooling.as_ref().ok().map(curve),
-            air_curtain: of.curtains.iter().map(curtain).collect(),
-            radiant_heaters: of.heaters_below_c.map(heaters),
+            input_hash: &inputs,
+            asked_coverage: study.control.coverage,
+            heating: setpoints.heating.as_ref().ok().map(curve),
+            cooling: setpoints.cooling.as_ref().ok().map(curve),
+            air_curtain: setpoints.curtains.iter().map(curtain).collect(),
+            radiant_heaters: setpoints.heaters.map(heaters),
         };
         let text = toml::to_string(&setup).map_err(|e| failed(std::io::Error::other(e)))?;
         write_whole(&folder.join(format!("{name}.toml")), format!("{HEAD}{text}").as_bytes())?;
-        write_whole(&folder.join(format!("{name}.csv")), table(of).as_bytes())?;
+        write_whole(&folder.join(format!("{name}.csv")), table(setpoints).as_bytes())?;
     }
     write_whole(&folder.join(PUBLISHED), published_table().as_bytes())
 }
@@ -141,12 +150,13 @@ fn curtain(of: &CurtainThreshold) -> Curtain {
     }
 }
 
-fn heaters(threshold: Threshold) -> Heaters {
-    Heaters { on_below_ambient_c: threshold.value, misclassified: threshold.misclassified }
+fn heaters(threshold: HeaterThreshold) -> Heaters {
+    let HeaterThreshold { below_c, misclassified, temperature_c } = threshold;
+    Heaters { on_below_ambient_c: below_c, misclassified, temperature_c }
 }
 
 /// The setpoints of every full degree within the validity of either profile; empty where a mode has none.
-fn table(of: &Setpoints) -> String {
+fn table(of: &setpoints::Setpoints) -> String {
     let profiles = [&of.heating, &of.cooling].map(|p| p.as_ref().ok());
     let ends = || profiles.iter().flatten().flat_map(|p| p.curve.valid_c);
     let (from, to) = (ends().fold(f64::INFINITY, f64::min).floor(), ends().fold(f64::NEG_INFINITY, f64::max).ceil());

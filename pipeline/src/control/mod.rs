@@ -1,148 +1,122 @@
-//! What a controller on board can learn from the optima: setpoint profiles and thresholds, as files that it can load.
+//! Controllers that see the present alone: setpoints from the optima, every mission under every controller, and setpoints as
+//! files that a bus can load.
 
+mod clouds;
+mod controllers;
+mod drive;
 mod files;
+mod traces;
 
-use cabin::{ComfortWindow, OperatingMode, celsius};
-use ingest::sample::Sample;
-use rayon::prelude::*;
-use setpoints::{Edge, FitError, Point, Profile, Switch, Threshold, curtain_threshold_k, fit, threshold};
-use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
-use store::Store;
+use cabin::PassengerViews;
+use store::{ControlId, ControlRow, RecordedStage, SetpointRow, StageRecord, Store};
 use study::Study;
 
-use crate::record::input_hash;
-use crate::{PipelineError, freshness, open};
+use crate::basis::SimulationBasis;
+use crate::missions::{WeatherAndShade, missions};
+use crate::{Inputs, PipelineError, Progress, Work, freshness};
+use clouds::Clouds;
+use drive::Driving;
 
-/// Samples whose optima are read at a time.
-const BLOCK: usize = 1024;
+pub(crate) use controllers::{controllers_at_most, own};
+pub use files::write_setpoints;
 
-/// Setpoints of a design in a comfort window.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Setpoints {
-    /// Name of the design.
-    pub design: String,
-    /// The comfort window.
-    pub window: ComfortWindow,
-    /// Setpoint while heating, or why there is none.
-    pub heating: Result<Profile, FitError>,
-    /// Setpoint while cooling, or why there is none.
-    pub cooling: Result<Profile, FitError>,
-    /// From which difference on the air curtains run, of the cabin over ambient temperature while heating, of the ambient over
-    /// the cabin temperature while cooling; nothing for a design without them.
-    pub curtains: Vec<CurtainThreshold>,
-    /// Below which ambient temperature in °C the radiant heaters run; `None` for a design without them, and where they always or
-    /// never do.
-    pub heaters_below_c: Option<Threshold>,
-}
+/// Missions between two transactions, per thread: some seconds of work.
+const MISSIONS_A_THREAD: usize = 16;
 
-/// From where on air curtains run in a mode.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct CurtainThreshold {
-    /// Heating or cooling.
-    pub mode: OperatingMode,
-    /// That of the optima, in K; `None` where they always or never run.
-    pub of_optima: Option<Threshold>,
-    /// That of the model at the mean ambient temperature of the mode, in K; `None` where curtains never pay.
-    pub analytic_k: Option<f64>,
-}
-
-/// An optimum as a profile sees it.
-#[derive(Debug, Clone, Copy)]
-struct Hour {
-    mode: OperatingMode,
-    ambient_k: f64,
-    cabin_k: f64,
-    curtain: bool,
-    heaters: bool,
-    weight: f64,
-}
-
-/// Extracts the setpoints of every design and window of a study from its optima, writes them as TOML and CSV to a folder, and
-/// gives them in the order of the study.
-///
-/// # Errors
-/// [`PipelineError::Stale`] where the optima are; [`PipelineError::Request`] for a coverage that is no share;
-/// [`PipelineError::Write`], [`PipelineError::Store`].
-pub fn control(study: &Study, coverage: f64, to: &Path) -> Result<(PathBuf, Vec<Setpoints>), PipelineError> {
-    if !(0.5..=1.0).contains(&coverage) {
-        return Err(PipelineError::Request(format!("--coverage {coverage} must lie between 0.5 and 1")));
-    }
-    let mut store = open::for_reading(study)?;
-    if let Some(stale) = freshness::optima(study, &mut store)? {
+pub(crate) fn control(
+    study: &Study,
+    inputs: &Inputs,
+    store: &mut Store,
+    progress: &dyn Progress,
+) -> Result<Work, PipelineError> {
+    if let Some(stale) = freshness::samples(inputs, store)? {
         return Err(stale.into());
     }
-    let clouds = clouds(&mut store)?;
-    let inputs = input_hash(&mut store)?;
-    store.close()?;
-    let windows = study.grid.windows();
-    let found: Vec<Setpoints> = clouds
-        .par_iter()
-        .enumerate()
-        .map(|(n, hours)| setpoints(study, n / windows.len(), windows[n % windows.len()], hours, coverage))
-        .collect();
-    let folder = study.base.join(to);
-    files::write(study, &inputs, coverage, &found, &folder)?;
-    Ok((folder, found))
-}
-
-/// The solved hours of every design and window, in the order of the study.
-fn clouds(store: &mut Store) -> Result<Vec<Vec<Hour>>, PipelineError> {
+    if let Some(stale) = freshness::optima(study, store)? {
+        return Err(stale.into());
+    }
+    let key = freshness::control_key(study, inputs, store)?;
+    if let Some(record) = store.stage(RecordedStage::Control)?.filter(|record| record.key == key) {
+        return Ok(work(study, 0, record.result.parse().unwrap_or(0), 0));
+    }
+    store.reopen_stage(RecordedStage::Control)?;
+    let samples = store.samples()?;
     let grid = store.grid()?;
-    let weights: BTreeMap<u8, f64> = store.months()?.into_iter().map(|m| (m.month, m.sample_weight)).collect();
-    let mut samples: Vec<Sample> = store.samples()?;
-    samples.sort_by_key(|s| s.id);
-    let mut clouds = vec![Vec::new(); grid.designs.len() * grid.windows.len()];
-    for block in samples.chunks(BLOCK) {
-        let of_id: BTreeMap<i64, &Sample> = block.iter().map(|s| (s.id, s)).collect();
-        for row in store.optima(&grid, block[0].id, block[block.len() - 1].id)? {
-            let operation = row.outcome.as_ref().and_then(|outcome| outcome.operation());
-            let (Some(o), Some(sample)) = (operation, of_id.get(&row.sample_id)) else { continue };
-            clouds[row.design * grid.windows.len() + row.window].push(Hour {
-                mode: o.mode,
-                ambient_k: sample.disturbances.ambient_temperature_k,
-                cabin_k: o.temperatures.cabin_k,
-                curtain: o.devices.air_curtain,
-                heaters: o.devices.radiant_heaters,
-                weight: weights.get(&sample.month).copied().unwrap_or(0.0),
-            });
+    let clouds = Clouds::read(study, store, &grid, &samples)?;
+    let setpoints = clouds.all();
+    let driving = Driving {
+        controllers: controllers::controllers(study, &clouds, &setpoints)?,
+        basis: SimulationBasis {
+            study,
+            grid,
+            views: PassengerViews::new(&study.vehicle),
+            surroundings: WeatherAndShade::of(inputs)?,
+            missions: missions(samples),
+        },
+    };
+
+    // What the database should hold, and what it holds that it should not.
+    let wanted = driving.keys();
+    let known = store.control_keys(&driving.basis.grid)?;
+    let stale: Vec<ControlId> =
+        known.iter().filter(|(id, key)| wanted.get(*id) != Some(*key)).map(|(id, _)| id.clone()).collect();
+    store.forget_controls(&driving.basis.grid, &stale)?;
+    let missing = |id: &ControlId| wanted.get(id).filter(|key| known.get(id) != Some(*key)).cloned();
+
+    progress.begin("driven", driving.basis.missions.len() as u64);
+    let mut driven = 0;
+    let mut chunks = driving.basis.missions.chunks(MISSIONS_A_THREAD * rayon::current_num_threads());
+    let mut read = |store: &mut Store| match chunks.next() {
+        Some(chunk) => driving.jobs(store, chunk, &missing).map(|jobs| Some((chunk.len(), jobs))),
+        None => Ok(None),
+    };
+    let mut write = |store: &mut Store, rows: &[ControlRow]| {
+        driven += rows.len();
+        if rows.is_empty() { Ok(()) } else { store.put_controls(&driving.basis.grid, rows) }
+    };
+    let (mut next, mut done) = (read(store)?, Vec::new());
+    while let Some((count, jobs)) = next {
+        if progress.stop() {
+            break;
         }
+        // While some are driven, those before are written and those after are read.
+        let (rows, beside) = rayon::join(
+            || driving.run(&jobs, progress),
+            || write(store, &done).map_err(PipelineError::from).and_then(|()| read(store)),
+        );
+        (next, done) = (beside?, rows);
+        progress.advance(count as u64);
     }
-    Ok(clouds)
+    write(store, &done)?;
+    progress.end();
+    if progress.stop() {
+        return Err(PipelineError::Interrupted);
+    }
+    let traces = traces::traces(&driving, store)?;
+    store.check_controls(&|| progress.stop())?;
+    if progress.stop() {
+        return Err(PipelineError::Interrupted);
+    }
+    let missions = driving.basis.missions.len();
+    store.complete_controls(&StageRecord { key, result: missions.to_string() }, &setpoints, &traces)?;
+    Ok(work(study, driven, missions, stale.len()))
 }
 
-fn setpoints(study: &Study, design: usize, window: ComfortWindow, hours: &[Hour], coverage: f64) -> Setpoints {
-    let row = &study.design_rows[design];
-    let in_mode = |mode| hours.iter().filter(move |h| h.mode == mode && h.weight > 0.0);
-    let profile = |mode, edge| {
-        let point = |h: &Hour| Point { ambient_c: celsius(h.ambient_k), cabin_c: celsius(h.cabin_k), weight: h.weight };
-        fit(&in_mode(mode).map(point).collect::<Vec<_>>(), edge, coverage)
-    };
-    let curtain = |mode| {
-        // A cabin that is cooled while it is colder outside is better off with open doors.
-        let sign = if mode == OperatingMode::Cooling { -1.0 } else { 1.0 };
-        let switch = |h: &Hour| Switch { value: sign * (h.cabin_k - h.ambient_k), is_on: h.curtain, weight: h.weight };
-        let switches: Vec<Switch> = in_mode(mode).map(switch).collect();
-        let (sum_k, weight) = in_mode(mode).fold((0.0, 0.0), |(s, w), h| (s + h.weight * h.ambient_k, w + h.weight));
-        let kind = &study.grid.designs()[design];
-        let cop = if mode == OperatingMode::Cooling { &kind.cooling_cop } else { &kind.heating_cop };
-        let analytic_k = if weight > 0.0 { curtain_threshold_k(&study.vehicle, cop, sum_k / weight) } else { None };
-        CurtainThreshold { mode, of_optima: threshold(&switches), analytic_k }
-    };
-    // Heaters run where it is cold: the threshold is one of the negative temperature.
-    let heater = |h: &Hour| Switch { value: -celsius(h.ambient_k), is_on: h.heaters, weight: h.weight };
-    let heaters = || threshold(&hours.iter().filter(|h| h.weight > 0.0).map(heater).collect::<Vec<_>>());
-    let modes = [OperatingMode::Heating, OperatingMode::Cooling];
-    Setpoints {
-        design: row.name.clone(),
-        window,
-        heating: profile(OperatingMode::Heating, Edge::Upper),
-        cooling: profile(OperatingMode::Cooling, Edge::Lower),
-        curtains: if row.devices.air_curtain { modes.map(curtain).to_vec() } else { Vec::new() },
-        heaters_below_c: if row.devices.radiant_heaters {
-            heaters().map(|t| Threshold { value: -t.value, ..t })
-        } else {
-            None
-        },
-    }
+fn work(study: &Study, driven: usize, missions: usize, stale: usize) -> Work {
+    let designs = if study.control.windows.is_empty() { 0 } else { study.control.designs.len() };
+    let message = format!(
+        "{driven} missions driven by causal controllers now ({missions} missions × {designs} designs); {stale} no longer valid"
+    );
+    Work { computed: driven as u64, withdrawn: stale as u64, total: (missions * designs) as u64, message }
+}
+
+/// The setpoints that the database holds of a study, in its order.
+///
+/// # Errors
+/// [`PipelineError::Store`].
+pub fn setpoints(study: &Study) -> Result<Vec<SetpointRow>, PipelineError> {
+    let mut store = crate::open::for_reading(study)?;
+    let rows = store.setpoints()?;
+    store.close()?;
+    Ok(rows)
 }

@@ -13,7 +13,7 @@ use super::{AirCurtain, Setting};
 pub struct CausalController {
     /// Setpoint while heating.
     pub heating: Curve,
-    /// Setpoint while cooling, at no ambient temperature below that of heating.
+    /// Setpoint while cooling. Where it lies below that of heating, the middle serves both modes.
     pub cooling: Curve,
     /// How far on the wrong side of its setpoint the cabin is as a mode begins, in K: 0 in the paper, whose two setpoints lie
     /// apart. With one setpoint for both modes it keeps them from working against each other.
@@ -37,14 +37,14 @@ const DEAD_BAND_K: f64 = 2.0;
 const HYSTERESIS_K: f64 = 1.0;
 
 impl CausalController {
-    /// The paper's state machine with published setpoints, and without curtains and radiant heaters.
+    /// The paper's state machine with two setpoints, and without curtains and radiant heaters.
     #[must_use]
-    pub fn published(published: &Published) -> Self {
+    pub fn new(heating: Curve, cooling: Curve) -> Self {
         Self {
-            heating: published.heating.clone(),
-            cooling: published.cooling.clone(),
-            dead_band_k: if published.is_single() { DEAD_BAND_K } else { 0.0 },
-            cools_above_c: published.cools_above_c,
+            dead_band_k: if heating == cooling { DEAD_BAND_K } else { 0.0 },
+            heating,
+            cooling,
+            cools_above_c: f64::NEG_INFINITY,
             hysteresis_k: HYSTERESIS_K,
             air_curtain: AirCurtain::Off,
             heaters_below_c: None,
@@ -52,15 +52,28 @@ impl CausalController {
         }
     }
 
+    /// The same with published setpoints.
+    #[must_use]
+    pub fn published(published: &Published) -> Self {
+        let of = Self::new(published.heating.clone(), published.cooling.clone());
+        Self { cools_above_c: published.cools_above_c, ..of }
+    }
+
     /// Setpoints and thresholds at an ambient temperature in K.
     pub(super) fn setting(&self, ambient_k: f64) -> Setting {
         let ambient_c = celsius(ambient_k);
         let [heating_k, cooling_k] = [&self.heating, &self.cooling].map(|curve| cabin::kelvin(curve.at(ambient_c)));
+        let middle_k = 0.5 * (heating_k + cooling_k);
+        let (heating_k, cooling_k, dead_band_k) = if cooling_k < heating_k {
+            (middle_k, middle_k, DEAD_BAND_K)
+        } else {
+            (heating_k, cooling_k, self.dead_band_k)
+        };
         Setting {
             heating_k,
             cooling_k,
-            heat_below_k: heating_k - self.dead_band_k,
-            cool_above_k: if ambient_c < self.cools_above_c { f64::INFINITY } else { cooling_k + self.dead_band_k },
+            heat_below_k: heating_k - dead_band_k,
+            cool_above_k: if ambient_c < self.cools_above_c { f64::INFINITY } else { cooling_k + dead_band_k },
             stop_beyond_k: self.hysteresis_k,
             stops_idle: false,
             begins_anew: false,
