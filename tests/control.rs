@@ -210,3 +210,40 @@ fn cli_driving_can_be_turned_off_and_setpoints_stay() {
     let run = scratch.expect(0, &["control"]);
     assert!(run.stdout.contains("10 files in "), "{}", run.stdout);
 }
+
+#[test]
+fn cli_the_report_compares_controllers_in_tables_and_figures() {
+    let scratch = solved();
+    let report = scratch.read("report/report.md");
+    let table = |title: &str| -> Vec<String> {
+        let after = report.split_once(title).unwrap_or_else(|| panic!("{title}\n{report}")).1;
+        let rows = after.lines().skip_while(|line| !line.starts_with('|')).take_while(|line| line.starts_with('|'));
+        rows.skip(2).map(str::to_owned).collect()
+    };
+    assert_eq!(table("## Setpoints for a controller on board").len(), 2);
+    assert_eq!(table("## Causal controllers over the year: hp+curtain").len(), 2);
+    let published = table("Published setpoints beside the extracted ones");
+    assert_eq!(published.len(), 9);
+    // Its numbers are those of the database.
+    let [power, outside] = ["mean_hvac_power_w", "100.0 * outside_fraction"].map(|value| {
+        let sql = format!("SELECT {value} FROM control_annual WHERE controller = 'vecto' AND pmv_limit = 1.0");
+        scratch.query(&sql)[0][0].parse::<f64>().unwrap()
+    });
+    let row = published.iter().find(|row| row.starts_with("| vecto |")).unwrap();
+    assert!(row.contains(&format!("| {power:.0} |")) && row.contains(&format!("| {outside:.1} % |")), "{row}");
+    for figure in [
+        "temperature_setpoints",
+        "aircurtain_setpoint",
+        "causal_time_resolved",
+        "causal_pareto_front",
+        "control_pareto",
+    ] {
+        let svg = scratch.read(&format!("report/{figure}.svg"));
+        assert!(report.contains(&format!("({figure}.svg)")), "{figure}");
+        assert!(svg.starts_with("<svg ") && svg.trim_end().ends_with("</svg>"), "{figure}");
+        assert!(!svg.contains("NaN") && !svg.contains("inf"), "{figure}");
+    }
+    let csv = scratch.read("report/control_outside.csv");
+    // Each of two profiles and nine published setpoints judged by two windows.
+    assert_eq!(csv.lines().count(), 1 + 2 * 2 + 9 * 2);
+}

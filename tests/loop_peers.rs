@@ -4,7 +4,10 @@
 
 mod common;
 
-use cabin::{Cabin, Disturbances, Heating, PassengerViews, Vehicle, kelvin, passenger_positions_m, place_passengers};
+use cabin::{
+    Cabin, ComfortWindow, Disturbances, Heating, PassengerViews, Vehicle, kelvin, passenger_positions_m,
+    place_passengers,
+};
 use chrono::{DateTime, TimeDelta, Utc};
 use common::Scratch;
 use ingest::Content;
@@ -124,9 +127,10 @@ fn xval_numpy_a_causal_controller_in_closed_loop_comes_out_the_same() {
     // What optima there are does not matter to it.
     let optimum = optimum(&vehicle, &views, &design, &testing::winter_day(), 1.0);
     let segments = vec![Segment { optimum, band_k: [290.0, 295.0] }; hours];
+    let windows = [0.25, 0.5, 0.6, 0.65].map(|limit| ComfortWindow::symmetric(limit).unwrap());
     let scenario = Scenario { start: Start::Depot, limits: Limits::Rated };
     let variant =
-        Variant { design: &design, scenario, law: Law::Causal(&controller), segments: &segments, windows: &[] };
+        Variant { design: &design, scenario, law: Law::Causal(&controller), segments: &segments, windows: &windows };
     let (mut cases, mut ours) = (Vec::new(), Vec::new());
     for colder_k in COLDER_K {
         let (label, text) = (format!("causal {colder_k} K colder"), weather(name[5..15].parse().unwrap(), colder_k));
@@ -142,11 +146,17 @@ fn xval_numpy_a_causal_controller_in_closed_loop_comes_out_the_same() {
         };
         let s = simulate(&mission, &Dynamics::default(), &[variant]).unwrap().remove(0);
         let votes = s.max_abs_pmv_15min.unwrap();
-        ours.push((label.clone(), [s.mean_hvac_power_w, votes, s.saturated_fraction, s.tracking_error_k]));
+        let mut values = vec![s.mean_hvac_power_w, votes, s.saturated_fraction, s.tracking_error_k];
+        values.push(s.rides.mean_abs_pmv.unwrap());
+        values.extend(&s.rides.hours_outside);
+        ours.push((label.clone(), s.rides.passenger_hours, values));
         let causal = json!({
             "heating": heating, "cooling": cooling, "curtain_above_k": [4.8, 4.1], "heaters_below_c": 8.0
         });
-        cases.push(json!({"name": label, "heat_pump": true, "weather": scratch.path(&file), "causal": causal}));
+        let limits = windows.map(|w| [w.pmv_min(), w.pmv_max()]);
+        let weather = scratch.path(&file);
+        let case = json!({"name": label, "heat_pump": true, "weather": weather, "causal": causal, "windows": limits});
+        cases.push(case);
     }
     let given = json!({
         "mission": path, "shadow": scratch.path("shadow.csv"), "place": [47.3779, 8.5657],
@@ -157,8 +167,16 @@ fn xval_numpy_a_causal_controller_in_closed_loop_comes_out_the_same() {
         return;
     };
     assert_eq!(rows.len(), 3);
-    for ((label, ours), row) in ours.iter().zip(&rows[1..]) {
+    for ((label, passenger_hours, ours), row) in ours.iter().zip(&rows[1..]) {
         assert_close(label, ours, row);
+        let theirs: Vec<f64> = row[5..].iter().map(|text| number(text)).collect();
+        assert_eq!(theirs.len(), 1 + windows.len());
+        assert!((ours[4] - theirs[0]).abs() < 0.002, "{label}: {ours:?} {theirs:?}");
+        // A vote of 0.002 more or less moves when a limit is crossed by seconds.
+        for (ours, theirs) in ours[5..].iter().zip(&theirs[1..]) {
+            assert!((ours - theirs).abs() < 2e-3 * passenger_hours, "{label}: {ours} {theirs} of {passenger_hours}");
+        }
+        assert!(theirs[1..].iter().any(|hours| *hours > 0.1 && *hours < 0.9 * passenger_hours), "{label}: {theirs:?}");
     }
 }
 

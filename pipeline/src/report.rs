@@ -1,9 +1,10 @@
 //! The report: rows of the database onto the disk. No input is read.
 
+use cabin::ComfortWindow;
 use report::{ReportFile, StudyReport};
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
-use store::{RecordedStage, StageRecord, Store};
+use store::{RecordedStage, SetpointRow, StageRecord, Store};
 use study::Study;
 use study::assumptions::assumptions;
 
@@ -123,8 +124,28 @@ pub(crate) fn say_stale(
     Ok(())
 }
 
+/// The paper's three windows of its figure `temperature-setpoints`, or those of the design that are nearest.
+fn shown_windows(setpoints: &[SetpointRow], design: &str) -> Vec<ComfortWindow> {
+    let mut shown = Vec::new();
+    for limit in [0.25, 0.625, 1.0] {
+        let windows = setpoints.iter().filter(|row| row.design == design).map(|row| row.window);
+        let off = |w: &ComfortWindow| (w.pmv_limit() - limit).abs();
+        shown.extend(windows.min_by(|a, b| off(a).total_cmp(&off(b))).filter(|w| !shown.contains(w)));
+    }
+    shown
+}
+
 /// What the database holds for the report.
 fn content(study: &Study, store: &mut Store) -> Result<StudyReport, PipelineError> {
+    let setpoints = store.setpoints()?;
+    let control_years = store.control_years()?;
+    let mut clouds = Vec::new();
+    // The last of the designs that are driven stands for them.
+    if let Some(year) = control_years.last() {
+        for window in shown_windows(&setpoints, &year.point.design) {
+            clouds.push(store.cloud(&year.point.design, window)?);
+        }
+    }
     Ok(StudyReport {
         name: study.name.clone(),
         note: study.note.clone(),
@@ -146,5 +167,13 @@ fn content(study: &Study, store: &mut Store) -> Result<StudyReport, PipelineErro
         simulation_failures: store.simulation_failures()?,
         traces: store.traces()?,
         trace_windows: store.trace_windows()?,
+        setpoints,
+        clouds,
+        control_years,
+        control_classes: store.control_classes()?,
+        control_outside: store.control_outside()?,
+        control_traces: store.control_traces()?,
+        control_trace_points: store.control_trace_points()?,
+        control_failures: store.control_failures()?,
     })
 }

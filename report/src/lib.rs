@@ -30,20 +30,32 @@ pub struct ReportFile {
 }
 
 /// The names of all files that a report can have.
-pub const FILES: [&str; 13] = [
+pub const FILES: [&str; 25] = [
     "report.md",
+    "aircurtain_setpoint.svg",
     "annual_average.csv",
+    "causal_pareto_front.svg",
+    "causal_time_resolved.svg",
+    "control_annual.csv",
+    "control_classes.csv",
+    "control_failures.csv",
+    "control_outside.csv",
+    "control_outside.svg",
+    "control_pareto.svg",
+    "curtain_threshold.csv",
     "data_quality.csv",
     "mission_cold.svg",
     "mission_hot.svg",
     "monthly_average.csv",
     "paper_comparison.csv",
     "pareto.svg",
+    "setpoint_profile.csv",
     "simulated_pareto.svg",
     "simulation_annual.csv",
     "simulation_classes.csv",
     "simulation_failures.csv",
     "sources.csv",
+    "temperature_setpoints.svg",
 ];
 
 /// The report could not be made.

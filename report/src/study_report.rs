@@ -4,8 +4,9 @@ use cabin::ComfortWindow;
 use chrono_tz::Tz;
 use ingest::FileRecord;
 use store::{
-    AnnualRow, DesignRow, ExclusionCount, LimitShare, MissionTrace, MonthRow, MonthlyRow, SimulatedClass,
-    SimulatedYear, SimulationFailure, StatusCounts, TraceWindow,
+    AnnualRow, Cloud, ControlClass, ControlPoint, ControlTrace, ControlYear, DesignRow, ExclusionCount, LimitShare,
+    MissionTrace, MonthRow, MonthlyRow, Outside, SetpointRow, SimulatedClass, SimulatedYear, SimulationFailure,
+    StatusCounts, TraceWindow,
 };
 use study::assumptions::Assumption;
 
@@ -55,6 +56,22 @@ pub struct StudyReport {
     pub traces: Vec<MissionTrace>,
     /// What they come to in each window that is simulated.
     pub trace_windows: Vec<TraceWindow>,
+    /// Setpoints of every design and window; none where `control` was never complete.
+    pub setpoints: Vec<SetpointRow>,
+    /// Optima of the design whose controllers are shown, in the windows that figures show.
+    pub clouds: Vec<Cloud>,
+    /// Annual means of controlled missions, by design, window and controller; empty where nothing is driven.
+    pub control_years: Vec<ControlYear>,
+    /// The same by month and temperature.
+    pub control_classes: Vec<ControlClass>,
+    /// Annual power beside the passenger-hours outside each window.
+    pub control_outside: Vec<Outside>,
+    /// The mission that is shown in time under some controllers.
+    pub control_traces: Vec<ControlTrace>,
+    /// What it comes to under all of them, with its largest absolute 15-minute vote and that of the optima.
+    pub control_trace_points: Vec<(ControlPoint, Option<f64>, f64)>,
+    /// Missions that controllers cannot drive: mission, design, reason.
+    pub control_failures: Vec<[String; 3]>,
 }
 
 impl StudyReport {

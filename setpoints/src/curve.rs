@@ -9,6 +9,29 @@ pub enum Shape {
     PiecewiseLinear(Vec<(f64, f64)>),
 }
 
+impl Shape {
+    /// What it is called in files and tables.
+    #[must_use]
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Quadratic(_) => "quadratic",
+            Self::PiecewiseLinear(_) => "piecewise-linear",
+        }
+    }
+
+    /// Its numbers as JSON: the three coefficients, or pairs of ambient and cabin temperature in °C.
+    #[must_use]
+    pub fn parameters(&self) -> String {
+        match self {
+            Self::Quadratic(coefficients) => format!("{coefficients:?}"),
+            Self::PiecewiseLinear(pairs) => {
+                let pairs: Vec<[f64; 2]> = pairs.iter().map(|(x, y)| [*x, *y]).collect();
+                format!("{pairs:?}")
+            }
+        }
+    }
+}
+
 /// A setpoint in °C over the ambient temperature in °C; beyond its range it stays as it is at the end.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curve {

@@ -260,6 +260,49 @@ JOIN hvac_design AS d USING (design_id)
 JOIN comfort_window AS w USING (window_id)
 GROUP BY c.design_id, c.window_id, c.controller, c.place";
 
+/// What follows a profile is judged by all windows in a table of its own; the annual power is that of its own window.
+const CONTROL_OUTSIDE: &str = "INSERT INTO control_outside
+WITH monthly AS (
+    SELECT
+        o.design_id,
+        o.profile_id,
+        o.window_id,
+        r.month,
+        sum(o.passenger_hours_outside ORDER BY r.mission)
+            / nullif(sum(r.passenger_hours ORDER BY r.mission), 0.0) AS outside
+    FROM controlled_outside AS o
+    JOIN controlled_mission AS r ON r.source_file_id = o.source_file_id AND r.design_id = o.design_id
+        AND r.window_id = o.profile_id AND r.controller = 'extracted'
+    GROUP BY o.design_id, o.profile_id, o.window_id, r.month
+),
+annual AS (
+    SELECT
+        d.name AS design,
+        p.pmv_min AS profile_pmv_min,
+        p.pmv_max AS profile_pmv_max,
+        w.pmv_limit,
+        w.pmv_min,
+        w.pmv_max,
+        sum(m.outside * n.days ORDER BY month) / sum(CASE WHEN m.outside IS NOT NULL THEN n.days END) AS outside_fraction
+    FROM monthly AS m
+    JOIN month_weight AS n USING (month)
+    JOIN hvac_design AS d USING (design_id)
+    JOIN comfort_window AS w USING (window_id)
+    JOIN comfort_window AS p ON p.window_id = m.profile_id
+    GROUP BY m.design_id, m.profile_id, m.window_id
+)
+SELECT
+    a.design, 'extracted', a.profile_pmv_min, a.profile_pmv_max, a.pmv_limit, a.pmv_min, a.pmv_max, c.mean_hvac_power_w,
+    a.outside_fraction, c.run_id
+FROM annual AS a
+JOIN control_annual AS c ON c.design = a.design AND c.controller = 'extracted' AND c.pmv_min = a.profile_pmv_min
+    AND c.pmv_max = a.profile_pmv_max
+UNION ALL
+SELECT
+    design, controller, NULL, NULL, pmv_limit, pmv_min, pmv_max, mean_hvac_power_w, outside_fraction, run_id
+FROM control_annual
+WHERE controller NOT LIKE 'extracted%'";
+
 impl Store {
     /// Completes the optima: renews the averages of the months that have changed, and records the stage.
     ///
@@ -306,7 +349,14 @@ impl Store {
         rows: &[SetpointRow],
         traces: &[ControlTrace],
     ) -> Result<(), StoreError> {
-        let renew = ["DELETE FROM control_annual", CONTROL_ANNUAL, "DELETE FROM control_class", CONTROL_CLASS];
+        let renew = [
+            "DELETE FROM control_annual",
+            CONTROL_ANNUAL,
+            "DELETE FROM control_class",
+            CONTROL_CLASS,
+            "DELETE FROM control_outside",
+            CONTROL_OUTSIDE,
+        ];
         self.drive(async |c| {
             let mut tx = begin(c).await?;
             let run_id =

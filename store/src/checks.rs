@@ -15,7 +15,7 @@ type Table = (&'static str, &'static [&'static str]);
 
 /// Tables whose rows get their check when the transaction that wrote them ends. Optima get theirs
 /// while they are inserted.
-const SEALED: [Table; 15] = [
+const SEALED: [Table; 16] = [
     ("source_file", &["source_file_id"]),
     ("data_quality", &["source_file_id", "position"]),
     ("excluded_segment", &["mission", "segment"]),
@@ -29,6 +29,7 @@ const SEALED: [Table; 15] = [
     ("unsimulated_mission", &["source_file_id", "design_id", "window_id"]),
     ("controlled_mission_key", &["source_file_id", "design_id"]),
     CONTROLLED,
+    ("controlled_outside", &["source_file_id", "design_id", "profile_id", "window_id"]),
     ("mission_trace", &["trace_id"]),
     ("trace_minute", &["trace_id", "minute"]),
 ];
@@ -36,7 +37,7 @@ const SIMULATED: Table = ("simulated_mission", &["source_file_id", "design_id", 
 const CONTROLLED: Table = ("controlled_mission", &["source_file_id", "design_id", "window_id", "controller"]);
 const OPTIMA: Table = ("optimum_point", &["sample_id", "design_id", "window_id"]);
 /// Tables of averages, with their keys.
-const AVERAGES: [(&str, &str); 12] = [
+const AVERAGES: [(&str, &str); 13] = [
     ("simulation_month", "design_id, window_id, controller, month"),
     ("simulation_class_month", "design_id, window_id, class_order, month"),
     ("monthly_average", "design, pmv_min, pmv_max, month"),
@@ -48,6 +49,7 @@ const AVERAGES: [(&str, &str); 12] = [
     ("heater_threshold", "design, pmv_min, pmv_max"),
     ("control_annual", "design, pmv_min, pmv_max, controller"),
     ("control_class", "design, pmv_min, pmv_max, controller, class_order"),
+    ("control_outside", "design, controller, profile_pmv_min, profile_pmv_max, pmv_min, pmv_max"),
     ("control_trace", "design, pmv_min, pmv_max, controller, minute"),
 ];
 /// Rows that get their checks in one statement.

@@ -54,6 +54,23 @@ pub struct ControlClass {
     pub point: ControlPoint,
 }
 
+/// A row of `control_outside`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outside {
+    /// Design.
+    pub design: String,
+    /// Controller.
+    pub controller: String,
+    /// The window whose profile it follows; `None` for setpoints that no window belongs to.
+    pub profile: Option<ComfortWindow>,
+    /// The window by which it is judged.
+    pub window: ComfortWindow,
+    /// Annual mean power in W.
+    pub mean_hvac_power_w: f64,
+    /// Share of the passenger-hours outside the window; `None` where nobody ever is on board.
+    pub outside_fraction: Option<f64>,
+}
+
 /// A mission in time under a controller.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ControlTrace {
@@ -117,6 +134,32 @@ impl Store {
             ORDER BY d.position, w.position, a.controller, a.class_order";
         self.select(sql, |r| {
             Ok(ControlClass { sorted_by: r.try_get("sorted_by")?, class: r.try_get("class")?, point: point(r)? })
+        })
+    }
+
+    /// The table `control_outside`, in the order of the study: profiles by their windows.
+    ///
+    /// # Errors
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
+    pub fn control_outside(&mut self) -> Result<Vec<Outside>, StoreError> {
+        let sql = "SELECT a.* FROM control_outside AS a
+            JOIN hvac_design AS d ON d.name = a.design JOIN comfort_window AS w USING (pmv_min, pmv_max)
+            LEFT JOIN comfort_window AS p ON p.pmv_min = a.profile_pmv_min AND p.pmv_max = a.profile_pmv_max
+            ORDER BY d.position, w.position, a.controller, p.position";
+        self.select(sql, |r| {
+            let limits: (Option<f64>, Option<f64>) = (r.try_get("profile_pmv_min")?, r.try_get("profile_pmv_max")?);
+            let profile = match limits {
+                (Some(low), Some(high)) => ComfortWindow::new(low, high).ok(),
+                _ => None,
+            };
+            Ok(Outside {
+                design: r.try_get("design")?,
+                controller: r.try_get("controller")?,
+                profile,
+                window: window(r)?,
+                mean_hvac_power_w: r.try_get("mean_hvac_power_w")?,
+                outside_fraction: r.try_get("outside_fraction")?,
+            })
         })
     }
 

@@ -59,6 +59,8 @@ pub struct ControlledMission {
     pub passenger_hours: f64,
     /// Those with a 15-minute vote outside the window.
     pub passenger_hours_outside: f64,
+    /// The same for each window that judges it besides, by its place in the stored grid.
+    pub outside: Vec<(usize, f64)>,
     /// Share of the time at a power limit.
     pub saturated_fraction: f64,
     /// Root mean square of cabin temperature less setpoint in K, while the air unit is on.
@@ -153,5 +155,21 @@ async fn put(c: &mut SqliteConnection, grid: &StoredGrid, row: &ControlRow) -> R
             .set("saturated_fraction", m.saturated_fraction)?
             .set("tracking_error_k", m.tracking_error_k)?;
     }
-    if missions.is_empty() { Ok(()) } else { insert.execute(c).await.map(|_| ()) }
+    if missions.is_empty() {
+        return Ok(());
+    }
+    insert.execute(&mut *c).await?;
+    let mut outside = Insert::into("controlled_outside");
+    let all = missions.iter().flat_map(|m| m.outside.iter().map(|(window, hours)| (m.window, *window, *hours)));
+    let mut count = 0;
+    for (profile, window, hours) in all {
+        outside = (if count == 0 { outside } else { outside.another() })
+            .set("source_file_id", file)?
+            .set("design_id", design)?
+            .set("profile_id", grid.window_ids[profile])?
+            .set("window_id", grid.window_ids[window])?
+            .set("passenger_hours_outside", hours)?;
+        count += 1;
+    }
+    if count == 0 { Ok(()) } else { outside.execute(c).await.map(|_| ()) }
 }

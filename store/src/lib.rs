@@ -6,6 +6,7 @@
 
 mod averages;
 mod checks;
+mod clouds;
 mod connection;
 mod control_views;
 mod controls;
@@ -26,8 +27,9 @@ mod views;
 
 pub use self::setpoints::SetpointRow;
 pub use checks::Checked;
+pub use clouds::{Cloud, CloudPoint};
 pub use connection::{Store, lock_path};
-pub use control_views::{ControlClass, ControlMinute, ControlPoint, ControlTrace, ControlYear};
+pub use control_views::{ControlClass, ControlMinute, ControlPoint, ControlTrace, ControlYear, Outside};
 pub use controls::{ControlId, ControlRow, ControlledMission};
 pub use error::StoreError;
 pub use files::KnownFile;

@@ -89,16 +89,13 @@ pub(crate) async fn put(c: &mut SqliteConnection, run_id: i64, rows: &[SetpointR
             let insert = into("setpoint_profile")?.set("mode", *mode)?;
             let insert = match profile {
                 Err(reason) => insert.set("reason", reason.as_str())?,
-                Ok(p) => {
-                    let (kind, parameters) = text(&p.curve.shape);
-                    insert
-                        .set("kind", kind)?
-                        .set("parameters", parameters)?
-                        .set("valid_from_ambient_c", p.curve.valid_c[0])?
-                        .set("valid_to_ambient_c", p.curve.valid_c[1])?
-                        .set("coverage", p.coverage)?
-                        .set("hour_count", p.points as i64)?
-                }
+                Ok(p) => insert
+                    .set("kind", p.curve.shape.kind())?
+                    .set("parameters", p.curve.shape.parameters())?
+                    .set("valid_from_ambient_c", p.curve.valid_c[0])?
+                    .set("valid_to_ambient_c", p.curve.valid_c[1])?
+                    .set("coverage", p.coverage)?
+                    .set("hour_count", p.points as i64)?,
             };
             insert.execute(&mut *c).await?;
         }
@@ -122,18 +119,6 @@ pub(crate) async fn put(c: &mut SqliteConnection, run_id: i64, rows: &[SetpointR
     Ok(())
 }
 
-/// The kind of a curve, and its parameters as JSON.
-fn text(shape: &Shape) -> (&'static str, String) {
-    let json = |value: serde_json::Result<String>| value.expect("numbers become JSON");
-    match shape {
-        Shape::Quadratic(coefficients) => (QUADRATIC, json(serde_json::to_string(coefficients))),
-        Shape::PiecewiseLinear(pairs) => (PIECEWISE_LINEAR, json(serde_json::to_string(pairs))),
-    }
-}
-
-const QUADRATIC: &str = "quadratic";
-const PIECEWISE_LINEAR: &str = "piecewise-linear";
-
 fn profile(r: &SqliteRow) -> Result<Result<Profile, String>, sqlx::Error> {
     let Some(kind) = r.try_get::<Option<String>, _>("kind")? else {
         return Ok(Err(r.try_get("reason")?));
@@ -141,7 +126,7 @@ fn profile(r: &SqliteRow) -> Result<Result<Profile, String>, sqlx::Error> {
     let parameters: String = r.try_get("parameters")?;
     let invalid = |e: serde_json::Error| sqlx::Error::ColumnDecode { index: "parameters".to_owned(), source: e.into() };
     let shape = match kind.as_str() {
-        QUADRATIC => Shape::Quadratic(serde_json::from_str(&parameters).map_err(invalid)?),
+        "quadratic" => Shape::Quadratic(serde_json::from_str(&parameters).map_err(invalid)?),
         _ => Shape::PiecewiseLinear(serde_json::from_str(&parameters).map_err(invalid)?),
     };
     let valid_c = [r.try_get("valid_from_ambient_c")?, r.try_get("valid_to_ambient_c")?];

@@ -4,8 +4,9 @@
 
 The cases name a mission (ZTBus), a weather file (hours from interval_start_utc: T_degC, DNI_Wm2, DHI_Wm2), a shadow file, the place, where
 passengers stand, and for each case the design and what the optimum of each hour prescribes, or a causal controller with its setpoints over
-the ambient temperature. Printed is a line for each case: mean power in W, largest 15-minute vote, share of the time at a power limit,
-tracking error in K.
+the ambient temperature, and the comfort windows that judge it. Printed is a line for each case: mean power in W, largest 15-minute vote,
+share of the time at a power limit, tracking error in K, mean absolute 15-minute vote of the passengers, and for each window the hours that
+passengers ride outside it.
 
 Nothing is shared with the program: view factors are double integrals over both areas, the sun is that of the Almanac, every passenger has
 a vote of his own, in double precision by numpy. What the paper does not say is what the program's documents say: controllers are asked once
@@ -174,6 +175,8 @@ def simulate(case, seconds, minutes, views):
     people = Passengers(views)
     mode, heaters_on, integral, heater_integral = 0, False, 0.0, 0.0
     votes, energy, held, tracked, largest = [], 0.0, 0, [], 0.0
+    windows = case.get("windows", [])
+    boarded, votes_felt, outside = 0.0, 0.0, [0.0] * len(windows)
     for second in range(60 * len(minutes)):
         (passengers, door), (ambient, solar) = seconds[second], minutes[second // 60]
         doors = 0.6 * door
@@ -227,13 +230,18 @@ def simulate(case, seconds, minutes, views):
         x = (4 * heun(heun(x, 0.5), 0.5) - heun(x, 1.0)) / 3
         energy += abs(power) + heater_power + (1020.0 * doors if curtain else 0.0)
         votes.append(people.vote(x[:5], ambient))
-        if passengers >= 1:
+        if passengers > 0:
             last = votes[-900:]
-            largest = max(largest, abs(sum(last) / len(last)))
+            felt = sum(last) / len(last)
+            boarded += passengers
+            votes_felt += passengers * abs(felt)
+            outside = [o + passengers * (felt < low or felt > high) for o, (low, high) in zip(outside, windows)]
+            if passengers >= 1:
+                largest = max(largest, abs(felt))
         if mode != 0:
             tracked.append(x[2] - setpoint)
     rms = float(np.sqrt(np.mean(np.square(tracked)))) if tracked else 0.0
-    return energy / len(votes), largest, held / len(votes), rms
+    return [energy / len(votes), largest, held / len(votes), rms, votes_felt / max(boarded, 1.0)] + [o / 3600 for o in outside]
 
 
 def main():

@@ -19,6 +19,8 @@ pub(super) struct Driven {
     pub name: String,
     /// The window whose profile it follows; `None` for setpoints that no window belongs to, judged by all.
     pub window: Option<usize>,
+    /// Whether all windows judge it, or its own alone.
+    pub judged_by_all: bool,
     pub controller: CausalController,
 }
 
@@ -80,8 +82,12 @@ pub(super) fn controllers(
         let row = |window: usize| &all[design * windows.len() + window].setpoints;
         let Some(shown) = shown_window(study, 1.0) else { break };
         let devices = Devices::of(row(shown));
-        let fixed =
-            |name: &str, controller| Driven { name: name.to_owned(), window: None, controller: devices.on(controller) };
+        let fixed = |name: &str, controller| Driven {
+            name: name.to_owned(),
+            window: None,
+            judged_by_all: true,
+            controller: devices.on(controller),
+        };
         let own =
             own.iter().map(|(name, own)| fixed(name, CausalController::new(own.heating.clone(), own.cooling.clone())));
         let published = published().into_iter().map(|p| fixed(p.name, CausalController::published(&p)));
@@ -97,7 +103,8 @@ pub(super) fn controllers(
                 _ => following(&clouds.of_years(design, window, &|y| training.takes(&years, year, y))),
             };
             let controller = devices.on(controller?);
-            Some((year, Driven { name: training.name().to_owned(), window: Some(window), controller }))
+            let judged_by_all = matches!(training, Training::All);
+            Some((year, Driven { name: training.name().to_owned(), window: Some(window), judged_by_all, controller }))
         };
         let extracted: Vec<(i32, Driven)> = wanted.par_iter().filter_map(extracted).collect();
         let mut of_years: BTreeMap<i32, Vec<Driven>> = BTreeMap::new();

@@ -169,9 +169,9 @@ impl Driving<'_> {
         let foreseen: BTreeMap<usize, Foreseen> = optima.iter().map(|(w, o)| (*w, Foreseen::of(o, samples))).collect();
         let all = &study.control.windows;
         let driven = self.of_mission(design, samples);
-        // Who follows a profile is judged by its window alone.
+        // Who follows a profile of some years alone is judged by its window alone.
         let judges = |driven: &Driven| {
-            let own = all.iter().position(|w| Some(*w) == driven.window);
+            let own = all.iter().position(|w| Some(*w) == driven.window).filter(|_| !driven.judged_by_all);
             own.map_or(0..all.len(), |place| place..place + 1)
         };
         let variant = |driven| variant(study, design, driven, &segments[&all[0]], &windows[judges(driven)]);
@@ -194,10 +194,16 @@ impl Driving<'_> {
                 static_mean_abs_pmv: foreseen[window].mean_abs_pmv,
                 passenger_hours: s.rides.passenger_hours,
                 passenger_hours_outside: s.rides.hours_outside[place],
+                outside: if driven.window.is_none() || !driven.judged_by_all {
+                    Vec::new()
+                } else {
+                    all.iter().copied().zip(s.rides.hours_outside.iter().copied()).collect()
+                },
                 saturated_fraction: s.saturated_fraction,
                 tracking_error_k: s.tracking_error_k,
             };
-            all[judges(driven)].iter().enumerate().map(by).collect()
+            let judging = all[judges(driven)].iter().enumerate();
+            judging.filter(|(_, window)| driven.window.is_none_or(|own| own == **window)).map(by).collect()
         };
         Ok(driven.iter().zip(summaries.iter().flatten()).flat_map(judged).collect())
     }

@@ -126,12 +126,12 @@ const HEAD: &str = "\
 # while heating, of ambient over cabin temperature while cooling.\n\n";
 
 fn curve(profile: &Profile) -> Curve {
-    let (kind, coefficients_c, ambient_and_cabin_c) = match &profile.curve.shape {
-        Shape::Quadratic(coefficients) => ("quadratic", Some(*coefficients), None),
-        Shape::PiecewiseLinear(pairs) => ("piecewise-linear", None, Some(pairs.clone())),
+    let (coefficients_c, ambient_and_cabin_c) = match &profile.curve.shape {
+        Shape::Quadratic(coefficients) => (Some(*coefficients), None),
+        Shape::PiecewiseLinear(pairs) => (None, Some(pairs.clone())),
     };
     Curve {
-        kind,
+        kind: profile.curve.shape.kind(),
         valid_from_ambient_c: profile.curve.valid_c[0],
         valid_to_ambient_c: profile.curve.valid_c[1],
         coverage: profile.coverage,

@@ -44,7 +44,7 @@ pub struct Curve {
     pub dash: &'static str,
     /// Width.
     pub width: f64,
-    /// Hour and value, in the order of time.
+    /// Hour and value, in the order of time. Where a value is not a number, the line breaks.
     pub points: Vec<(f64, f64)>,
 }
 
@@ -100,14 +100,14 @@ fn panel(panel: &Panel, top: f64, x: &dyn Fn(f64) -> f64) -> Value {
         .iter()
         .map(|c| {
             let mut path = String::new();
-            for (i, (hour, value)) in c.points.iter().enumerate() {
-                let _ = write!(
-                    path,
-                    "{}{} {}",
-                    if i == 0 { "M" } else { " " },
-                    coordinate(x(*hour)),
-                    coordinate(y(*value))
-                );
+            let mut move_to = "M";
+            for (hour, value) in &c.points {
+                if value.is_nan() {
+                    move_to = "M";
+                    continue;
+                }
+                let _ = write!(path, "{move_to}{} {}", coordinate(x(*hour)), coordinate(y(*value)));
+                move_to = " ";
             }
             let place = at;
             if !c.name.is_empty() {
@@ -123,7 +123,7 @@ fn panel(panel: &Panel, top: f64, x: &dyn Fn(f64) -> f64) -> Value {
 }
 
 /// A step of 1, 2 or 5 times a power of ten that gives two to five ticks.
-fn tick_step(range: f64) -> f64 {
+pub(super) fn tick_step(range: f64) -> f64 {
     let rough = (range / 3.0).max(1e-3);
     let power = 10_f64.powf(rough.log10().floor());
     let mantissa = rough / power;
@@ -140,6 +140,6 @@ fn tick_step(range: f64) -> f64 {
 }
 
 /// Two decimals, so that a platform's arithmetic cannot change bytes.
-fn coordinate(value: f64) -> String {
+pub(super) fn coordinate(value: f64) -> String {
     format!("{value:.2}")
 }

@@ -3,6 +3,10 @@
 
 mod annual;
 mod assumptions;
+mod control;
+mod control_classes;
+mod control_front;
+mod control_mission;
 mod designs;
 mod findings;
 mod inputs;
@@ -14,6 +18,7 @@ mod parts;
 mod quality;
 mod reduction;
 mod repeat;
+mod setpoints;
 mod simulation;
 mod simulation_classes;
 mod title;
@@ -38,6 +43,10 @@ pub(crate) fn all(study: &StudyReport) -> Result<Vec<Section>, ReportError> {
         simulation::section(study),
         missions::section(study)?,
         simulation_classes::section(study),
+        setpoints::section(study)?,
+        control::section(study),
+        control_mission::section(study)?,
+        control_classes::section(study),
         Some(designs::section(study)),
         Some(inputs::section(study)),
         Some(quality::section(study)),

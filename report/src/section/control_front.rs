@@ -1,0 +1,84 @@
+//! Whether extracted profiles are better than other setpoints that take the same power.
+
+use cabin::ComfortWindow;
+
+use crate::StudyReport;
+
+/// How a controller compares with extracted profiles of the same annual power.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Verdict {
+    pub controller: String,
+    pub mean_hvac_power_w: f64,
+    /// Mean absolute vote.
+    pub mean_vote: Coordinate,
+    /// Share of the passenger-hours outside the window.
+    pub outside: Coordinate,
+}
+
+/// A measure of discomfort, of the controller and of extracted profiles at its power; `None` where these do not reach it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Coordinate {
+    pub own: Option<f64>,
+    pub extracted: Option<f64>,
+}
+
+impl Coordinate {
+    /// Whether extracted profiles leave less discomfort.
+    pub fn is_beaten(self) -> bool {
+        self.own.zip(self.extracted).is_some_and(|(own, extracted)| extracted < own)
+    }
+}
+
+/// All controllers of a design whose setpoints belong to no window, judged by one.
+pub(super) fn verdicts(study: &StudyReport, design: &str, window: ComfortWindow) -> Vec<Verdict> {
+    let years = || study.control_years.iter().map(|y| &y.point).filter(|p| p.design == design);
+    let votes: Vec<(f64, f64)> = years()
+        .filter(|p| p.controller == "extracted")
+        .filter_map(|p| Some((p.mean_hvac_power_w, p.mean_abs_pmv?)))
+        .collect();
+    let outside = study.control_outside.iter().filter(|o| o.design == design && o.window == window);
+    let outside: Vec<(f64, f64)> = outside
+        .filter(|o| o.profile.is_some())
+        .filter_map(|o| Some((o.mean_hvac_power_w, o.outside_fraction?)))
+        .collect();
+    if votes.is_empty() {
+        return Vec::new();
+    }
+    years()
+        .filter(|p| p.window == window && !p.controller.starts_with("extracted"))
+        .map(|p| Verdict {
+            controller: p.controller.clone(),
+            mean_hvac_power_w: p.mean_hvac_power_w,
+            mean_vote: Coordinate { own: p.mean_abs_pmv, extracted: at(&votes, p.mean_hvac_power_w) },
+            outside: Coordinate { own: p.outside_fraction, extracted: at(&outside, p.mean_hvac_power_w) },
+        })
+        .collect()
+}
+
+/// The discomfort of a line of powers and discomforts at a power: linear in between, at a higher one that of the most powerful,
+/// at a lower one none.
+fn at(line: &[(f64, f64)], power_w: f64) -> Option<f64> {
+    let mut line = line.to_vec();
+    line.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let after = line.partition_point(|(power, _)| *power <= power_w);
+    let (x0, y0) = *line.get(after.checked_sub(1)?)?;
+    let Some((x1, y1)) = line.get(after) else { return Some(y0) };
+    Some(y0 + (y1 - y0) * (power_w - x0) / (x1 - x0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn prop_discomfort_at_a_power_lies_on_the_line() {
+        let line = [(2000.0, 0.2), (1000.0, 0.8)];
+        assert_eq!(
+            [900.0, 1000.0, 1500.0, 2000.0, 3000.0].map(|w| at(&line, w)),
+            [None, Some(0.8), Some(0.5), Some(0.2), Some(0.2)]
+        );
+        assert!(Coordinate { own: Some(0.5), extracted: Some(0.4) }.is_beaten());
+        assert!(!Coordinate { own: Some(0.4), extracted: Some(0.4) }.is_beaten());
+        assert!(!Coordinate { own: Some(0.4), extracted: None }.is_beaten());
+    }
+}
