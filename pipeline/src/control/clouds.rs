@@ -11,7 +11,7 @@ use study::Study;
 use crate::PipelineError;
 
 /// Samples whose optima are read at a time.
-const BLOCK: usize = 1024;
+const BLOCK: usize = 128;
 
 /// The optimum of an hour of a local year and month; it weighs nothing yet.
 #[derive(Debug, Clone, Copy)]

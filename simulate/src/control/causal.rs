@@ -82,3 +82,22 @@ impl CausalController {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use cabin::kelvin;
+
+    #[test]
+    fn prop_where_setpoints_cross_their_middle_serves_both_modes_with_a_dead_band() {
+        let heating = Curve::through(&[(0.0, 20.0), (30.0, 26.0)]).unwrap();
+        let controller = CausalController::new(heating, Curve::constant(23.0));
+        let apart = controller.setting(kelvin(0.0));
+        assert_eq!([apart.heat_below_k, apart.cool_above_k], [kelvin(20.0), kelvin(23.0)]);
+        let crossed = controller.setting(kelvin(30.0));
+        assert_eq!([crossed.heating_k, crossed.cooling_k], [kelvin(24.5); 2]);
+        assert_eq!([crossed.heat_below_k, crossed.cool_above_k], [kelvin(22.5), kelvin(26.5)]);
+        // What ends one mode does not begin the other.
+        assert!(crossed.heating_k + crossed.stop_beyond_k < crossed.cool_above_k);
+    }
+}
