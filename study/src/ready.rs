@@ -300,5 +300,7 @@ fn expand(steps: &file::Steps) -> Result<Vec<f64>, String> {
         ));
     }
     // A rounding error of the division must not lose the last limit.
-    Ok((0..=(count + 1e-9).floor() as u32).map(|i| from + f64::from(i) * step).collect())
+    // Three steps of 0.1 are 0.3 to whoever typed them.
+    let typed = |limit: f64| (limit * 1e9).round() / 1e9;
+    Ok((0..=(count + 1e-9).floor() as u32).map(|i| typed(from + f64::from(i) * step)).collect())
 }
