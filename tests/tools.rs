@@ -56,3 +56,33 @@ fn cli_limits_are_what_was_typed() {
     let id = scratch.query("SELECT min(sample_id) FROM sample")[0][0].clone();
     scratch.expect(0, &["show", "--sample", &id, "--design", "hp", "--pmv-limit", "0.3"]);
 }
+
+#[test]
+fn cli_settings_say_what_differs_from_the_paper_first() {
+    let scratch = Scratch::small(3, "[0.5, 1.0]", "[]");
+    scratch.edit("study.toml", "[simulation]", "metabolic_rate_met = 1.4\n\n[simulation]");
+    scratch.expect(0, &["run"]);
+    let rows = scratch.query("SELECT name, value, unit, default_value, source, differs_from_default FROM setting");
+    let row = |name: &str| rows.iter().position(|row| row[0] == name).unwrap();
+    let rate = row("vehicle.metabolic_rate_met");
+    assert_eq!(rows[rate][1..], ["1.4", "met", "1.2", "the study file", "1"]);
+    assert_eq!(rows[row("dynamics.heat_pump_limit_w")][1..3], ["12000.0", "W"]);
+    assert!(rows[row("dynamics.ptc_limit_w")][4].contains("the paper does not print it"));
+    assert_eq!(rows[row("program_version")][1], env!("CARGO_PKG_VERSION"));
+    let first_same = rows.iter().position(|row| row[5] == "0").unwrap();
+    assert!(rate < first_same && rows[first_same..].iter().all(|row| row[5] == "0"), "{rows:?}");
+    // The text as it was run.
+    let text = scratch.query("SELECT text FROM study_text JOIN run USING (study_hash)");
+    assert!(text[0][0].contains("metabolic_rate_met = 1.4"), "{text:?}");
+    let report = scratch.read("report/report.md");
+    let first = report.split_once("## Assumptions").unwrap().1.lines().find(|line| line.starts_with("| cons"));
+    assert!(first.unwrap().contains("metabolic_rate_met = 1.4"), "{first:?}");
+
+    // What a stage has not used yet is not what its results rest on.
+    scratch.edit("study.toml", "metabolic_rate_met = 1.4", "metabolic_rate_met = 1.3");
+    scratch.expect(0, &["ingest"]);
+    let value = "SELECT value FROM setting WHERE name = 'vehicle.metabolic_rate_met'";
+    assert_eq!(scratch.query(value), [["1.4"]]);
+    scratch.expect(0, &["solve"]);
+    assert_eq!(scratch.query(value), [["1.3"]]);
+}

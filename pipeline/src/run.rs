@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
-use store::{RunEnd, RunStage, Store};
+use store::{RunEnd, RunStage, SettingRow, Store};
+use study::settings::{Setting, settings};
 use study::{Study, keys};
 
 use crate::lock::RunLock;
@@ -98,6 +99,9 @@ pub fn run(study: &Study, stages: &[Stage], options: &Options, progress: &dyn Pr
         return Err(damage);
     }
     let run_id = if only_report { None } else { Some(store.start_run(now(), PROGRAM_VERSION, &study.hash)?) };
+    if run_id.is_some() {
+        store.put_study_text(&study.hash, &study.text)?;
+    }
     let mut running = Running { study, stages, inputs, run_id, headline: Vec::new() };
     let outcome = stages.iter().try_for_each(|stage| running.stage(*stage, &mut store, progress));
     let summary = Summary::of(study, &mut store)?;
@@ -154,6 +158,7 @@ impl Running<'_> {
                 RunStage { stage: stage.name().to_owned(), computed, withdrawn, total, duration_s: end.duration_s };
             store.put_run_stage(id, &row)?;
             store.put_settings(stage.name(), &keys::settings(self.study, stage.name()))?;
+            store.put_study_settings(stage.name(), &setting_rows(self.study, stage))?;
         }
         progress.stage_ended(&end);
         Ok(())
@@ -190,6 +195,33 @@ impl Running<'_> {
             }
         }
     }
+}
+
+/// What the study says that a stage is the first to use; with the optima, the program's version.
+fn setting_rows(study: &Study, stage: Stage) -> Vec<SettingRow> {
+    let of_stage = |(_, s): &(usize, Setting)| s.stage == stage.name();
+    let row = |(position, s): (usize, Setting)| SettingRow {
+        position,
+        name: s.name,
+        value: s.value,
+        unit: s.unit.to_owned(),
+        default_value: s.default_value,
+        source: s.source.to_owned(),
+        differs_from_default: s.differs,
+    };
+    let mut rows: Vec<SettingRow> = settings(study).into_iter().enumerate().filter(of_stage).map(row).collect();
+    if stage == Stage::Solve {
+        rows.push(SettingRow {
+            position: usize::from(u16::MAX),
+            name: "program_version".to_owned(),
+            value: PROGRAM_VERSION.to_owned(),
+            unit: String::new(),
+            default_value: None,
+            source: "the program".to_owned(),
+            differs_from_default: false,
+        });
+    }
+    rows
 }
 
 /// Refuses a database that is damaged: what everybody reads, or all of it. What a stage builds on is looked at there.

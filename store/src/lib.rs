@@ -38,7 +38,7 @@ pub use missions::StoredSegment;
 pub use optima::{MissingOptima, NewOptimum, StatusCounts, StoredOptimum};
 pub use runs::{Counts, RunEnd, RunRow, RunStage};
 pub use simulations::{SimulatedClass, SimulatedYear, SimulationFailure, SimulationId, SimulationRow};
-pub use stages::{RecordedStage, StageRecord};
+pub use stages::{RecordedStage, SettingRow, StageRecord};
 pub use traces::{MissionTrace, TraceRow, TraceWindow};
 pub use verification::{CheckRow, VerificationRow};
 pub use views::{AnnualRow, ExclusionCount, LimitShare, MonthRow, MonthlyRow, OptimumRow};

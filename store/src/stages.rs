@@ -1,11 +1,11 @@
 //! For which inputs each stage was last completed.
 
 use sqlx::Row;
-use sqlx::sqlite::SqliteConnection;
+use sqlx::sqlite::{SqliteConnection, SqliteRow};
 use std::collections::BTreeMap;
 
 use crate::checks::{RowHash, commit, is_whole};
-use crate::row::{Insert, begin};
+use crate::row::{Insert, begin, count};
 use crate::{Store, StoreError};
 
 /// A stage that is left out of a run while what it was completed for is as it was.
@@ -40,6 +40,25 @@ pub struct StageRecord {
     pub key: String,
     /// What it came to, in the stage's own JSON.
     pub result: String,
+}
+
+/// A value of the study file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SettingRow {
+    /// Place by section and key.
+    pub position: usize,
+    /// Section, a dot, key.
+    pub name: String,
+    /// Its value.
+    pub value: String,
+    /// Its unit; empty for what has none.
+    pub unit: String,
+    /// What it is where the study file does not say it.
+    pub default_value: Option<String>,
+    /// Where the value comes from.
+    pub source: String,
+    /// Whether it is not the default.
+    pub differs_from_default: bool,
 }
 
 impl Store {
@@ -109,6 +128,67 @@ impl Store {
                 let row = Insert::into("stage_setting").set("stage", stage)?.set("name", name.as_str())?;
                 row.set("value", value.as_str())?.execute(&mut tx).await?;
             }
+            commit(tx).await
+        })
+    }
+
+    /// Records the values of the study file that a stage is the first to use, in their order.
+    ///
+    /// # Errors
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
+    pub fn put_study_settings(&mut self, stage: &str, rows: &[SettingRow]) -> Result<(), StoreError> {
+        if self.study_settings(stage)? == rows {
+            return Ok(());
+        }
+        self.drive(async |c| {
+            let mut tx = begin(c).await?;
+            sqlx::query("DELETE FROM study_setting WHERE stage = ?").bind(stage).execute(&mut *tx).await?;
+            for row in rows {
+                let insert = Insert::into("study_setting")
+                    .set("stage", stage)?
+                    .set("position", row.position as i64)?
+                    .set("name", row.name.as_str())?
+                    .set("value", row.value.as_str())?
+                    .set("unit", row.unit.as_str())?
+                    .set("default_value", row.default_value.as_deref())?
+                    .set("source", row.source.as_str())?
+                    .set("differs_from_default", row.differs_from_default)?;
+                insert.execute(&mut tx).await?;
+            }
+            commit(tx).await
+        })
+    }
+
+    /// The values of the study file that a stage was the first to use.
+    fn study_settings(&mut self, stage: &str) -> Result<Vec<SettingRow>, StoreError> {
+        self.drive(async |c| {
+            let sql = "SELECT * FROM study_setting WHERE stage = ? ORDER BY position";
+            let rows = sqlx::query(sql).bind(stage).fetch_all(c).await?;
+            let row = |r: &SqliteRow| {
+                Ok(SettingRow {
+                    position: usize::try_from(count(r, "position")?).unwrap_or(usize::MAX),
+                    name: r.try_get("name")?,
+                    value: r.try_get("value")?,
+                    unit: r.try_get("unit")?,
+                    default_value: r.try_get("default_value")?,
+                    source: r.try_get("source")?,
+                    differs_from_default: r.try_get("differs_from_default")?,
+                })
+            };
+            rows.iter().map(row).collect()
+        })
+    }
+
+    /// Records the text of a study file.
+    ///
+    /// # Errors
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
+    pub fn put_study_text(&mut self, hash: &str, text: &str) -> Result<(), StoreError> {
+        self.drive(async |c| {
+            let mut tx = begin(c).await?;
+            let sql = "INSERT INTO study_text VALUES (?, ?)
+                ON CONFLICT DO UPDATE SET text = excluded.text WHERE text <> excluded.text";
+            sqlx::query(sql).bind(hash).bind(text).execute(&mut *tx).await?;
             commit(tx).await
         })
     }

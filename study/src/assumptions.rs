@@ -135,7 +135,10 @@ pub fn assumptions(study: &Study) -> Vec<Assumption> {
     }
     let changed = [changed_constants(v), changed_constants(&study.dynamics)].concat();
     if !changed.is_empty() {
-        add("constants that differ from the paper's bus", changed.join(", "), "the study file", false);
+        let what = "constants that differ from the paper's bus".to_owned();
+        let value = changed.join(", ");
+        // What everything else is to be read with comes first.
+        list.insert(0, Assumption { what, value, source: "the study file".to_owned(), substitute: false });
     }
     list
 }

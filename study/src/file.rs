@@ -433,8 +433,8 @@ pub enum StudyFileError {
 const LARGEST: u64 = 4 << 20;
 
 impl StudyFile {
-    /// Reads and parses a study file.
-    pub fn read(path: &Path) -> Result<Self, StudyFileError> {
+    /// Reads the text of a study file.
+    pub fn read(path: &Path) -> Result<String, StudyFileError> {
         let shown = path.display().to_string();
         if std::fs::metadata(path).is_ok_and(|m| !m.is_file()) {
             let message = "not a regular file; give a file".to_owned();
@@ -444,9 +444,7 @@ impl StudyFile {
             let message = format!("more than {} MiB; no study file is that large", LARGEST >> 20);
             return Err(StudyFileError::Content { path: shown, message });
         }
-        let text =
-            std::fs::read_to_string(path).map_err(|source| StudyFileError::Read { path: shown.clone(), source })?;
-        Self::parse(&text, &shown)
+        std::fs::read_to_string(path).map_err(|source| StudyFileError::Read { path: shown, source })
     }
 
     pub fn parse(text: &str, path: &str) -> Result<Self, StudyFileError> {

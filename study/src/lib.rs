@@ -7,6 +7,7 @@ pub mod assumptions;
 mod file;
 pub mod keys;
 mod ready;
+pub mod settings;
 mod sources;
 pub mod template;
 
@@ -82,6 +83,10 @@ pub struct Study {
     pub method: Method,
     /// BLAKE3 of the study with all defaults, without the places of its results.
     pub hash: String,
+    /// The text of the study file.
+    pub text: String,
+    /// What the study file says, with all defaults.
+    typed: serde_json::Value,
 }
 
 /// Which controllers drive every mission, and how they are judged.
@@ -103,9 +108,11 @@ impl Study {
     /// # Errors
     /// [`StudyFileError`] names file, line and column, or what does not fit.
     pub fn open(path: &Path, database: Option<&Path>) -> Result<Self, StudyFileError> {
-        let file = StudyFile::read(path)?;
+        let text = StudyFile::read(path)?;
+        let file = StudyFile::parse(&text, &path.display().to_string())?;
         let base = path.parent().map(Path::to_owned).unwrap_or_default();
         Self::new(&file, base, database)
+            .map(|study| Self { text, ..study })
             .map_err(|message| StudyFileError::Content { path: path.display().to_string(), message })
     }
 
@@ -117,6 +124,7 @@ impl Study {
         let file = StudyFile::parse(text, &path.display().to_string())?;
         let base = path.parent().map(Path::to_owned).unwrap_or_default();
         Self::new(&file, base, None)
+            .map(|study| Self { text: text.to_owned(), ..study })
             .map_err(|message| StudyFileError::Content { path: path.display().to_string(), message })
     }
 
@@ -180,6 +188,8 @@ impl Study {
             grid,
             design_rows,
             hash: keys::study_hash(file),
+            text: String::new(),
+            typed: serde_json::to_value(file).map_err(|e| e.to_string())?,
             method: Method::Fast,
         };
         Ok(study.solved_by(Method::Fast))
