@@ -17,6 +17,7 @@ mod files;
 mod folder;
 mod freshness;
 mod in_order;
+mod in_turns;
 mod ingest;
 mod inputs;
 mod lock;

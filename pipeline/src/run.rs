@@ -102,7 +102,8 @@ pub fn run(study: &Study, stages: &[Stage], options: &Options, progress: &dyn Pr
     if run_id.is_some() {
         store.put_study_text(&study.hash, &study.text)?;
     }
-    let mut running = Running { study, stages, inputs, run_id, headline: Vec::new() };
+    let settings = if run_id.is_some() { settings(study) } else { Vec::new() };
+    let mut running = Running { study, stages, inputs, run_id, settings, headline: Vec::new() };
     let outcome = stages.iter().try_for_each(|stage| running.stage(*stage, &mut store, progress));
     let summary = Summary::of(study, &mut store)?;
     let news = if outcome.is_ok() { news::news(study, &mut store, now())? } else { Vec::new() };
@@ -143,6 +144,8 @@ struct Running<'s> {
     stages: &'s [Stage],
     inputs: Inputs<'s>,
     run_id: Option<i64>,
+    /// All values of the study; none where nothing is recorded.
+    settings: Vec<Setting>,
     headline: Vec<String>,
 }
 
@@ -158,7 +161,7 @@ impl Running<'_> {
                 RunStage { stage: stage.name().to_owned(), computed, withdrawn, total, duration_s: end.duration_s };
             store.put_run_stage(id, &row)?;
             store.put_settings(stage.name(), &keys::settings(self.study, stage.name()))?;
-            store.put_study_settings(stage.name(), &setting_rows(self.study, stage))?;
+            store.put_study_settings(stage.name(), &setting_rows(&self.settings, stage))?;
         }
         progress.stage_ended(&end);
         Ok(())
@@ -198,18 +201,18 @@ impl Running<'_> {
 }
 
 /// What the study says that a stage is the first to use; with the optima, the program's version.
-fn setting_rows(study: &Study, stage: Stage) -> Vec<SettingRow> {
-    let of_stage = |(_, s): &(usize, Setting)| s.stage == stage.name();
-    let row = |(position, s): (usize, Setting)| SettingRow {
+fn setting_rows(settings: &[Setting], stage: Stage) -> Vec<SettingRow> {
+    let of_stage = |(_, s): &(usize, &Setting)| s.stage == stage.name();
+    let row = |(position, s): (usize, &Setting)| SettingRow {
         position,
-        name: s.name,
-        value: s.value,
+        name: s.name.clone(),
+        value: s.value.clone(),
         unit: s.unit.to_owned(),
-        default_value: s.default_value,
+        default_value: s.default_value.clone(),
         source: s.source.to_owned(),
         differs_from_default: s.differs,
     };
-    let mut rows: Vec<SettingRow> = settings(study).into_iter().enumerate().filter(of_stage).map(row).collect();
+    let mut rows: Vec<SettingRow> = settings.iter().enumerate().filter(of_stage).map(row).collect();
     if stage == Stage::Solve {
         rows.push(SettingRow {
             position: usize::from(u16::MAX),

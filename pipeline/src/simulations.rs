@@ -9,6 +9,7 @@ use study::Study;
 
 use crate::basis::{SimulationBasis, optima};
 use crate::freshness;
+use crate::in_turns::in_turns;
 use crate::missions::{MissionInTime, WeatherAndShade, missions};
 use crate::{Inputs, PipelineError, Progress, Work, traces};
 
@@ -67,33 +68,18 @@ pub(crate) fn simulate(
 
     progress.begin("simulated", basis.missions.len() as u64);
     let mut simulated = 0;
-    let mut chunks = basis.missions.chunks(MISSIONS_A_THREAD * rayon::current_num_threads());
-    let mut read = |store: &mut Store| match chunks.next() {
-        Some(chunk) => basis.jobs(store, chunk, &missing).map(|jobs| Some((chunk.len(), jobs))),
-        None => Ok(None),
-    };
-    let mut write = |store: &mut Store, rows: &[SimulationRow]| {
-        simulated += rows.iter().map(|r| r.result.as_ref().map_or(0, Vec::len)).sum::<usize>();
-        if rows.is_empty() { Ok(()) } else { store.put_simulations(&basis.grid, rows) }
-    };
-    let (mut next, mut done) = (read(store)?, Vec::new());
-    while let Some((count, jobs)) = next {
-        if progress.stop() {
-            break;
-        }
-        // While some are simulated, those before are written and those after are read.
-        let (rows, beside) = rayon::join(
-            || jobs.par_iter().flat_map_iter(|job| basis.run(job, progress)).collect(),
-            || write(store, &done).map_err(PipelineError::from).and_then(|()| read(store)),
-        );
-        (next, done) = (beside?, rows);
-        progress.advance(count as u64);
-    }
-    write(store, &done)?;
-    progress.end();
-    if progress.stop() {
-        return Err(PipelineError::Interrupted);
-    }
+    in_turns(
+        store,
+        &basis.missions,
+        MISSIONS_A_THREAD,
+        progress,
+        |store, missions| basis.jobs(store, missions, &missing),
+        |jobs| jobs.par_iter().flat_map_iter(|job| basis.run(job, progress)).collect(),
+        |store, rows: &[SimulationRow]| {
+            simulated += rows.iter().map(|r| r.result.as_ref().map_or(0, Vec::len)).sum::<usize>();
+            Ok(store.put_simulations(&basis.grid, rows)?)
+        },
+    )?;
     traces::trace(&basis, store, &wanted)?;
     store.check_simulations(&|| progress.stop())?;
     if progress.stop() {

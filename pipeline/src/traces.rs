@@ -27,9 +27,10 @@ pub(crate) fn trace(
     let stored = store.trace_keys()?;
     let (mut rows, mut kept) = (Vec::new(), Vec::new());
     for (i, label) in LABELS.into_iter().enumerate() {
-        let (Some(samples), Some(window)) =
-            (shown_mission(&basis.missions, label), shown_window(basis.study, PAPER_LIMITS[i]))
-        else {
+        let (Some(samples), Some(window)) = (
+            shown_mission(&basis.missions, label),
+            nearest_window(basis.study, &basis.study.simulated_windows, PAPER_LIMITS[i]),
+        ) else {
             continue;
         };
         let design = basis.study.grid.designs().len() - 1;
@@ -87,8 +88,8 @@ pub(crate) fn shown_mission<'m>(missions: &'m [Vec<Sample>], label: &str) -> Opt
     missions.iter().min_by(|a, b| (sign * mean_k(a)).total_cmp(&(sign * mean_k(b))))
 }
 
-/// The simulated window whose limit is nearest.
-fn shown_window(study: &Study, limit: f64) -> Option<usize> {
+/// Of some windows of the study, by their places, the one whose limit is nearest.
+pub(crate) fn nearest_window(study: &Study, among: &[usize], limit: f64) -> Option<usize> {
     let off = |w: &usize| (study.grid.windows()[*w].pmv_limit() - limit).abs();
-    study.simulated_windows.iter().copied().min_by(|a, b| off(a).total_cmp(&off(b)))
+    among.iter().copied().min_by(|a, b| off(a).total_cmp(&off(b)))
 }

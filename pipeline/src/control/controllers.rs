@@ -12,6 +12,7 @@ use study::Study;
 
 use super::clouds::Clouds;
 use crate::PipelineError;
+use crate::traces::nearest_window;
 
 /// A controller under its name.
 #[derive(Debug, Clone, PartialEq)]
@@ -80,7 +81,7 @@ pub(super) fn controllers(
     for &design in &study.control.designs {
         let windows = study.grid.windows();
         let row = |window: usize| &all[design * windows.len() + window].setpoints;
-        let Some(shown) = shown_window(study, 1.0) else { break };
+        let Some(shown) = nearest_window(study, &study.control.windows, 1.0) else { break };
         let devices = Devices::of(row(shown));
         let fixed = |name: &str, controller| Driven {
             name: name.to_owned(),
@@ -126,12 +127,6 @@ pub(crate) fn controllers_at_most(study: &Study) -> usize {
         0 => 0,
         windows => Training::EACH.len() * windows + published().len() + study.control.profiles.len(),
     }
-}
-
-/// The window that is driven whose limit is nearest.
-pub(super) fn shown_window(study: &Study, limit: f64) -> Option<usize> {
-    let off = |w: &usize| (study.grid.windows()[*w].pmv_limit() - limit).abs();
-    study.control.windows.iter().copied().min_by(|a, b| off(a).total_cmp(&off(b)))
 }
 
 /// A controller that follows profiles; `None` without any. A mode without a profile never begins.

@@ -12,6 +12,7 @@ use store::{ControlId, ControlRow, RecordedStage, SetpointRow, StageRecord, Stor
 use study::Study;
 
 use crate::basis::SimulationBasis;
+use crate::in_turns::in_turns;
 use crate::missions::{WeatherAndShade, missions};
 use crate::{Inputs, PipelineError, Progress, Work, freshness};
 use clouds::Clouds;
@@ -65,33 +66,18 @@ pub(crate) fn control(
 
     progress.begin("driven", driving.basis.missions.len() as u64);
     let mut driven = 0;
-    let mut chunks = driving.basis.missions.chunks(MISSIONS_A_THREAD * rayon::current_num_threads());
-    let mut read = |store: &mut Store| match chunks.next() {
-        Some(chunk) => driving.jobs(store, chunk, &missing).map(|jobs| Some((chunk.len(), jobs))),
-        None => Ok(None),
-    };
-    let mut write = |store: &mut Store, rows: &[ControlRow]| {
-        driven += rows.len();
-        if rows.is_empty() { Ok(()) } else { store.put_controls(&driving.basis.grid, rows) }
-    };
-    let (mut next, mut done) = (read(store)?, Vec::new());
-    while let Some((count, jobs)) = next {
-        if progress.stop() {
-            break;
-        }
-        // While some are driven, those before are written and those after are read.
-        let (rows, beside) = rayon::join(
-            || driving.run(&jobs, progress),
-            || write(store, &done).map_err(PipelineError::from).and_then(|()| read(store)),
-        );
-        (next, done) = (beside?, rows);
-        progress.advance(count as u64);
-    }
-    write(store, &done)?;
-    progress.end();
-    if progress.stop() {
-        return Err(PipelineError::Interrupted);
-    }
+    in_turns(
+        store,
+        &driving.basis.missions,
+        MISSIONS_A_THREAD,
+        progress,
+        |store, missions| driving.jobs(store, missions, &missing),
+        |jobs| driving.run(jobs, progress),
+        |store, rows: &[ControlRow]| {
+            driven += rows.len();
+            Ok(store.put_controls(&driving.basis.grid, rows)?)
+        },
+    )?;
     let traces = traces::traces(&driving, store)?;
     store.check_controls(&|| progress.stop())?;
     if progress.stop() {

@@ -5,12 +5,12 @@ use ingest::sample::Sample;
 use simulate::{Segment, Trace, simulate_with};
 use store::{ControlMinute, ControlTrace, Store};
 
-use super::controllers::{Driven, shown_window};
+use super::controllers::Driven;
 use super::drive::{Driving, variant};
 use crate::PipelineError;
 use crate::basis::optima;
 use crate::missions::MissionInTime;
-use crate::traces::shown_mission;
+use crate::traces::{nearest_window, shown_mission};
 
 /// The profiles that are shown (paper, figure `causal-time-resolved`), by the limit of their windows.
 const SHOWN_LIMITS: [f64; 2] = [0.25, 1.0];
@@ -21,9 +21,11 @@ const SHOWN_PUBLISHED: [&str; 2] = ["vdv-comfort", "vbz-18"];
 pub(super) fn traces(driving: &Driving<'_>, store: &mut Store) -> Result<Vec<ControlTrace>, PipelineError> {
     let basis = &driving.basis;
     let study = basis.study;
-    let (Some(design), Some(samples), Some(window)) =
-        (study.control.designs.last().copied(), shown_mission(&basis.missions, "hot"), shown_window(study, 1.0))
-    else {
+    let (Some(design), Some(samples), Some(window)) = (
+        study.control.designs.last().copied(),
+        shown_mission(&basis.missions, "hot"),
+        nearest_window(study, &study.control.windows, 1.0),
+    ) else {
         return Ok(Vec::new());
     };
     let loads = store.loads(&samples[0].segment.source_path)?;
@@ -32,7 +34,8 @@ pub(super) fn traces(driving: &Driving<'_>, store: &mut Store) -> Result<Vec<Con
     };
     let mut optima = optima(store, &basis.grid, samples)?;
     let Some(Ok(optima)) = optima.remove(&(design, window)) else { return Ok(Vec::new()) };
-    let limits: Vec<Option<usize>> = SHOWN_LIMITS.iter().map(|limit| shown_window(study, *limit)).collect();
+    let limits: Vec<Option<usize>> =
+        SHOWN_LIMITS.iter().map(|limit| nearest_window(study, &study.control.windows, *limit)).collect();
     let is_shown = |d: &&Driven| match d.window {
         Some(_) => d.name == "extracted" && limits.contains(&d.window),
         None => SHOWN_PUBLISHED.contains(&d.name.as_str()),
