@@ -6,7 +6,7 @@
 //! temperature, which makes the solution unique and all temperatures rise with the cabin's.
 
 use crate::{
-    Disturbances, HeatFlows, PassengerViews, PmvModel, Real, Slopes, SolarGains, Temperatures, Vehicle,
+    Disturbances, HeatFlows, HeatTransfer, PassengerViews, PmvModel, Real, Slopes, SolarGains, Temperatures, Vehicle,
     clothing_insulation_clo,
 };
 
@@ -66,7 +66,7 @@ impl<'a> Cabin<'a> {
         solar: SolarGains,
     ) -> Self {
         let v = vehicle;
-        let sigma = v.stefan_boltzmann_w_m2_k4;
+        let transfer = HeatTransfer::of(v);
         let ambient_k = disturbances.ambient_temperature_k;
         let door_all_open = v.door_loss_w_k15(ambient_k);
         let clothing = clothing_insulation_clo(ambient_k, v.clothing_floor_clo);
@@ -75,15 +75,15 @@ impl<'a> Cabin<'a> {
             ambient_k,
             solar,
             gains_w: [disturbances.passengers * v.passenger_heat_w, v.other_heat_w],
-            g_shell: v.convection_inside_w_m2_k * v.shell_area_m2,
-            g_interior: v.convection_inside_w_m2_k * v.interior_area_m2,
-            g_heater: v.convection_radiant_heater_w_m2_k * v.radiant_heater_area_m2,
-            g_outside: v.convection_outside_w_m2_k * v.shell_area_m2,
-            g_conduction: v.conduction_shell_w_m2_k * v.shell_area_m2,
-            r_heater_interior: sigma * v.radiant_heater_area_m2 * v.view_factor_heater_interior,
-            r_heater_shell: sigma * v.radiant_heater_area_m2 * v.view_factor_heater_shell,
-            r_interior_shell: sigma * v.interior_area_m2 * v.view_factor_interior_shell,
-            r_outside: sigma * v.shell_area_m2,
+            g_shell: transfer.convection_shell_inside_w_k,
+            g_interior: transfer.convection_interior_w_k,
+            g_heater: transfer.convection_radiant_heater_w_k,
+            g_outside: transfer.convection_shell_outside_w_k,
+            g_conduction: transfer.conduction_shell_w_k,
+            r_heater_interior: transfer.radiation_heater_interior_w_k4,
+            r_heater_shell: transfer.radiation_heater_shell_w_k4,
+            r_interior_shell: transfer.radiation_interior_shell_w_k4,
+            r_outside: transfer.radiation_shell_outside_w_k4,
             passenger_heat_w: v.passenger_heat_w,
             door_all_open,
             door: door_all_open * disturbances.door_open_fraction,

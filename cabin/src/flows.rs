@@ -98,6 +98,52 @@ impl<R: Real> HeatFlows<R> {
 }
 
 impl HeatFlows {
+    /// No heat anywhere.
+    pub const ZERO: Self = Self {
+        convection_shell_inside_w: 0.0,
+        convection_interior_w: 0.0,
+        convection_shell_outside_w: 0.0,
+        convection_radiant_heater_w: 0.0,
+        conduction_shell_w: 0.0,
+        radiation_shell_outside_w: 0.0,
+        radiation_heater_shell_w: 0.0,
+        radiation_heater_interior_w: 0.0,
+        radiation_interior_shell_w: 0.0,
+        door_w: 0.0,
+        passengers_w: 0.0,
+        other_w: 0.0,
+        air_unit_w: 0.0,
+        radiant_heater_power_w: 0.0,
+        solar: SolarGains { interior_w: 0.0, shell_inside_w: 0.0, shell_outside_w: 0.0 },
+    };
+
+    /// Flow by flow: `self` and so many times `other`.
+    #[must_use]
+    pub fn plus(&self, factor: f64, other: &Self) -> Self {
+        let sum = |a: f64, b: f64| a + factor * b;
+        Self {
+            convection_shell_inside_w: sum(self.convection_shell_inside_w, other.convection_shell_inside_w),
+            convection_interior_w: sum(self.convection_interior_w, other.convection_interior_w),
+            convection_shell_outside_w: sum(self.convection_shell_outside_w, other.convection_shell_outside_w),
+            convection_radiant_heater_w: sum(self.convection_radiant_heater_w, other.convection_radiant_heater_w),
+            conduction_shell_w: sum(self.conduction_shell_w, other.conduction_shell_w),
+            radiation_shell_outside_w: sum(self.radiation_shell_outside_w, other.radiation_shell_outside_w),
+            radiation_heater_shell_w: sum(self.radiation_heater_shell_w, other.radiation_heater_shell_w),
+            radiation_heater_interior_w: sum(self.radiation_heater_interior_w, other.radiation_heater_interior_w),
+            radiation_interior_shell_w: sum(self.radiation_interior_shell_w, other.radiation_interior_shell_w),
+            door_w: sum(self.door_w, other.door_w),
+            passengers_w: sum(self.passengers_w, other.passengers_w),
+            other_w: sum(self.other_w, other.other_w),
+            air_unit_w: sum(self.air_unit_w, other.air_unit_w),
+            radiant_heater_power_w: sum(self.radiant_heater_power_w, other.radiant_heater_power_w),
+            solar: SolarGains {
+                interior_w: sum(self.solar.interior_w, other.solar.interior_w),
+                shell_inside_w: sum(self.solar.shell_inside_w, other.solar.shell_inside_w),
+                shell_outside_w: sum(self.solar.shell_outside_w, other.solar.shell_outside_w),
+            },
+        }
+    }
+
     /// Every flow with its name, in the order of the fields.
     #[must_use]
     pub fn named_w(&self) -> [(&'static str, f64); 17] {

@@ -24,6 +24,7 @@ mod random;
 mod real;
 mod solar;
 mod state;
+mod transfer;
 mod vehicle;
 pub mod view_factor;
 mod window;
@@ -46,6 +47,7 @@ pub use random::unit_interval;
 pub use real::Real;
 pub use solar::{SolarGains, roof_irradiance_w_m2, wall_irradiance_w_m2};
 pub use state::{State, Target};
+pub use transfer::HeatTransfer;
 pub use vehicle::{Vehicle, VehicleError};
 pub use window::{ComfortWindow, WindowError};
 

@@ -1,7 +1,7 @@
 //! Hourly samples: a segment of a mission with its weather, sun and shade.
 
 use cabin::Disturbances;
-use chrono::{DateTime, Datelike, TimeDelta, Utc};
+use chrono::{DateTime, Datelike, TimeDelta, Timelike, Utc};
 use chrono_tz::Tz;
 use shading::{ShadowYear, Site};
 
@@ -27,8 +27,19 @@ pub struct Sample {
     pub solar_azimuth_rad: f64,
     /// Seconds whose weather is interpolated.
     pub interpolated_s: f64,
+    /// Local time of its start; `None` where it was not noted.
+    pub clock: Option<LocalClock>,
     /// What the sample was made from, as a hash: the reading of its mission, weather and shade of its hours, place and time zone.
     pub key: String,
+}
+
+/// When something begins, by the clock on the wall.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct LocalClock {
+    /// Hour, 0 … 23.
+    pub hour: u8,
+    /// 1 Monday … 7 Sunday.
+    pub weekday: u8,
 }
 
 /// What segments are joined with.
@@ -69,12 +80,14 @@ impl Surroundings<'_> {
         if let Err(error) = disturbances.check() {
             return Err(excluded(segment, error.to_string()));
         }
+        let local = start.with_timezone(&self.zone);
         Ok(Sample {
             id: sample_id(segment.bus, start),
-            month: start.with_timezone(&self.zone).month() as u8,
+            month: local.month() as u8,
             disturbances,
             solar_azimuth_rad: sun.azimuth_rad,
             interpolated_s: mean.interpolated_s,
+            clock: Some(LocalClock { hour: local.hour() as u8, weekday: local.weekday().number_from_monday() as u8 }),
             key: self.key(&segment, reading_key, start, end),
             segment,
         })

@@ -10,6 +10,7 @@ use store::{RecordedStage, Store};
 use study::{Study, keys};
 
 use crate::control::own;
+use crate::energy;
 use crate::record::input_hash;
 use crate::{Inputs, PROGRAM_VERSION, PipelineError};
 
@@ -69,10 +70,11 @@ pub(crate) fn optima(study: &Study, store: &mut Store) -> Result<Option<Stale>, 
     }
 }
 
-/// Key of all optima of a study: samples, designs and windows in their order.
+/// Key of all optima of a study: samples, designs and windows in their order, what the vehicle can give.
 pub(crate) fn solve_key(study: &Study, store: &mut Store) -> Result<String, PipelineError> {
     let mut parts: Vec<String> = study.design_rows.iter().map(|d| format!("{} {}", d.name, d.design_key)).collect();
     parts.extend(study.grid.windows().iter().map(|w| format!("{} {}", w.pmv_min(), w.pmv_max())));
+    parts.push(format!("{:?}", energy::bus(study).limits_w));
     parts.extend(store.sample_keys()?.into_iter().map(|(id, key)| format!("{id} {key}")));
     Ok(keys::hash(&parts.iter().map(String::as_str).collect::<Vec<_>>()))
 }

@@ -11,6 +11,7 @@ mod budget;
 mod canyon;
 mod check;
 mod control;
+mod energy;
 mod error;
 mod fetch;
 mod files;

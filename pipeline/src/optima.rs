@@ -8,9 +8,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use store::{MissingOptima, NewOptimum, RecordedStage, StageRecord, Store, StoredGrid};
 use study::Study;
 
-use crate::freshness;
 use crate::status::status_counts;
 use crate::{PipelineError, Progress, Work};
+use crate::{energy, freshness};
 
 pub(crate) fn solve(study: &Study, store: &mut Store, progress: &dyn Progress) -> Result<Work, PipelineError> {
     let key = freshness::solve_key(study, store)?;
@@ -20,6 +20,7 @@ pub(crate) fn solve(study: &Study, store: &mut Store, progress: &dyn Progress) -
     }
     store.reopen_stage(RecordedStage::Solve)?;
     let grid = store.put_grid(&study.design_rows, study.grid.windows())?.grid;
+    store.put_bus(&grid, &energy::bus(study))?;
     let gaps = store.missing_optima(&grid)?;
     let stored: BTreeMap<i64, Sample> = store.samples()?.into_iter().map(|s| (s.id, s)).collect();
 
@@ -45,11 +46,8 @@ pub(crate) fn solve(study: &Study, store: &mut Store, progress: &dyn Progress) -
     progress.end();
     let counts = store.status_counts()?;
     let result = serde_json::json!([counts.solved, counts.infeasible, counts.not_converged]).to_string();
-    store.check_stale_months(&|| progress.stop())?;
-    if progress.stop() {
-        return Err(PipelineError::Interrupted);
-    }
-    store.complete_optima(&StageRecord { key, result })?;
+    let energy = energy::energy(study, store, &grid, &stored, progress)?;
+    store.complete_optima(&StageRecord { key, result }, &grid, &energy)?;
     if total.programs > 0 {
         progress.info(&format!(
             "{} nonlinear programs, {:.2} quadratic subproblems each, largest KKT residual {:.1e}",

@@ -39,6 +39,7 @@ fn solve_and_commit(bencher: Bencher) {
         month: (i * 12 / YEAR_SAMPLES) as u8 + 1,
         disturbances: *d,
         solar_azimuth_rad: 0.0,
+        clock: None,
         interpolated_s: 0.0,
         key: i.to_string(),
     };

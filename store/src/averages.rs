@@ -7,7 +7,7 @@ use sqlx::sqlite::SqliteConnection;
 use crate::checks::{commit, seal_averages};
 use crate::row::begin;
 use crate::stages::{RecordedStage, StageRecord, record_stage};
-use crate::{ControlTrace, SetpointRow, Store, StoreError, control_views, setpoints};
+use crate::{ControlTrace, Energy, SetpointRow, Store, StoreError, StoredGrid, control_views, energy, setpoints};
 
 /// The months whose samples, designs or windows have changed.
 const MONTHLY: &str = "INSERT INTO monthly_average
@@ -82,6 +82,52 @@ SELECT
     coalesce((SELECT max(run_id) FROM run), 0)
 FROM annual AS a
 LEFT JOIN annual AS r ON r.design = 'ptc' AND r.pmv_min = a.pmv_min AND r.pmv_max = a.pmv_max";
+
+/// What a bus comes to in a year, at the hours that the missions show.
+const ANNUAL_ENERGY: &str = "INSERT INTO annual_energy
+WITH operation AS (
+    SELECT
+        sum(duration_s) / 3600.0 AS hours,
+        count(DISTINCT bus || ' ' || substr(start_utc, 1, 7)) / 12.0 AS bus_years
+    FROM mission_segment
+)
+SELECT
+    c.design,
+    c.pmv_limit,
+    c.pmv_min,
+    c.pmv_max,
+    a.hvac_power_w / 1000.0,
+    c.kwh_per_km,
+    o.hours / o.bus_years,
+    a.hvac_power_w / 1000.0 * o.hours / o.bus_years,
+    c.vehicle_power_share,
+    c.run_id
+FROM energy_class AS c
+JOIN annual_average AS a USING (design, pmv_min, pmv_max)
+CROSS JOIN operation AS o
+WHERE c.sorted_by = 'year'";
+
+/// Months by their days, within a month all samples alike.
+const UNMET_DEMAND: &str = "INSERT INTO unmet_demand
+SELECT
+    f.design,
+    f.pmv_limit,
+    f.pmv_min,
+    f.pmv_max,
+    l.heating_limit_w,
+    l.cooling_limit_w,
+    sum(f.over_limit_count),
+    sum(f.over_limit_count * n.sample_weight ORDER BY f.month),
+    sum(f.unmet_heat_w * f.sample_count * n.sample_weight ORDER BY f.month)
+        / sum(f.sample_count * n.sample_weight ORDER BY f.month),
+    a.unsolved_weight,
+    a.run_id
+FROM heat_flow_monthly AS f
+JOIN month_weight AS n ON n.month = f.month
+JOIN hvac_design AS d ON d.name = f.design
+JOIN power_limit AS l USING (design_id)
+JOIN annual_average AS a ON a.design = f.design AND a.pmv_min = f.pmv_min AND a.pmv_max = f.pmv_max
+GROUP BY f.design, f.pmv_min, f.pmv_max";
 
 /// The months whose simulations have changed.
 const SIMULATION_MONTH: &str = "INSERT INTO simulation_month
@@ -309,15 +355,24 @@ impl Store {
     ///
     /// # Errors
     /// [`StoreError::Refused`], [`StoreError::Damaged`].
-    pub fn complete_optima(&mut self, record: &StageRecord) -> Result<(), StoreError> {
+    pub fn complete_optima(
+        &mut self,
+        record: &StageRecord,
+        grid: &StoredGrid,
+        energy: &Energy,
+    ) -> Result<(), StoreError> {
         let renew = [
             "DELETE FROM monthly_average WHERE month IN (SELECT month FROM stale_month)",
             MONTHLY,
             "DELETE FROM annual_average",
             ANNUAL,
+            "DELETE FROM annual_energy",
+            ANNUAL_ENERGY,
+            "DELETE FROM unmet_demand",
+            UNMET_DEMAND,
             "DELETE FROM stale_month",
         ];
-        self.complete(RecordedStage::Solve, record, &renew)
+        self.complete(RecordedStage::Solve, record, &renew, Some((grid, energy)))
     }
 
     /// Completes the simulations: renews what they come to in the year and by class, and records the stage.
@@ -336,7 +391,7 @@ impl Store {
             SIMULATION_CLASS,
             "DELETE FROM stale_simulation_month",
         ];
-        self.complete(RecordedStage::Simulate, record, &renew)
+        self.complete(RecordedStage::Simulate, record, &renew, None)
     }
 
     /// Completes the missions under controllers: renews the setpoints that they follow, what they come to in the year and by
@@ -360,8 +415,7 @@ impl Store {
         ];
         self.drive(async |c| {
             let mut tx = begin(c).await?;
-            let run_id =
-                sqlx::query("SELECT coalesce(max(run_id), 0) FROM run").fetch_one(&mut *tx).await?.try_get(0)?;
+            let run_id = last_run(&mut tx).await?;
             setpoints::put(&mut tx, run_id, rows).await?;
             control_views::put_traces(&mut tx, run_id, traces).await?;
             for sql in renew {
@@ -379,9 +433,14 @@ impl Store {
         stage: RecordedStage,
         record: &StageRecord,
         renew: &[&'static str],
+        energy: Option<(&StoredGrid, &Energy)>,
     ) -> Result<(), StoreError> {
         self.drive(async |c| {
             let mut tx = begin(c).await?;
+            if let Some((grid, energy)) = energy {
+                let run_id = last_run(&mut tx).await?;
+                energy::put(&mut tx, run_id, grid, energy).await?;
+            }
             for &sql in renew {
                 execute(&mut tx, sql).await?;
             }
@@ -397,6 +456,10 @@ impl Store {
 async fn describe(c: &mut SqliteConnection) -> Result<(), StoreError> {
     execute(c, "PRAGMA analysis_limit = 1000").await?;
     execute(c, "ANALYZE").await
+}
+
+async fn last_run(c: &mut SqliteConnection) -> Result<i64, StoreError> {
+    Ok(sqlx::query("SELECT coalesce(max(run_id), 0) FROM run").fetch_one(c).await?.try_get(0)?)
 }
 
 async fn execute(c: &mut SqliteConnection, sql: &'static str) -> Result<(), StoreError> {

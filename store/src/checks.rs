@@ -15,7 +15,7 @@ type Table = (&'static str, &'static [&'static str]);
 
 /// Tables whose rows get their check when the transaction that wrote them ends. Optima get theirs
 /// while they are inserted.
-const SEALED: [Table; 16] = [
+const SEALED: [Table; 17] = [
     ("source_file", &["source_file_id"]),
     ("data_quality", &["source_file_id", "position"]),
     ("excluded_segment", &["mission", "segment"]),
@@ -23,6 +23,7 @@ const SEALED: [Table; 16] = [
     ("mission_segment", &["source_file_id", "segment"]),
     ("mission_load", &["source_file_id"]),
     ("hourly_sample", &["sample_id"]),
+    ("sample_clock", &["sample_id"]),
     ("hvac_design", &["design_id"]),
     ("comfort_window", &["window_id"]),
     SIMULATED,
@@ -37,11 +38,20 @@ const SIMULATED: Table = ("simulated_mission", &["source_file_id", "design_id", 
 const CONTROLLED: Table = ("controlled_mission", &["source_file_id", "design_id", "window_id", "controller"]);
 const OPTIMA: Table = ("optimum_point", &["sample_id", "design_id", "window_id"]);
 /// Tables of averages, with their keys.
-const AVERAGES: [(&str, &str); 13] = [
+const AVERAGES: [(&str, &str); 22] = [
     ("simulation_month", "design_id, window_id, controller, month"),
     ("simulation_class_month", "design_id, window_id, class_order, month"),
     ("monthly_average", "design, pmv_min, pmv_max, month"),
     ("annual_average", "design, pmv_min, pmv_max"),
+    ("heat_transfer", "one"),
+    ("power_limit", "design_id"),
+    ("class_month", "month"),
+    ("class_sum", "month, design_id, window_id"),
+    ("heat_flow_monthly", "design, pmv_min, pmv_max, month"),
+    ("unmet_demand", "design, pmv_min, pmv_max"),
+    ("energy_class", "design, pmv_min, pmv_max, sorted_by, class"),
+    ("annual_energy", "design, pmv_min, pmv_max"),
+    ("disturbance_histogram", "quantity, bin_from"),
     ("simulation_annual", "design, pmv_min, pmv_max, controller"),
     ("simulation_class", "design, pmv_min, pmv_max, class_order"),
     ("setpoint_profile", "design, pmv_min, pmv_max, mode"),
@@ -137,7 +147,8 @@ pub(crate) fn whole(store: Damage<'_>, table: &'static str, rows: &[SqliteRow]) 
     let mut hash = RowHash::default();
     for row in rows {
         if !is_whole(row, &mut hash)? {
-            return Err(StoreError::Damaged { path: path.to_owned(), what: table.to_owned() });
+            let key = SEALED.iter().chain([&OPTIMA]).find(|t| t.0 == table).map_or(&[][..], |t| t.1);
+            return Err(StoreError::Damaged { path: path.to_owned(), what: place((table, key), row) });
         }
     }
     Ok(())
@@ -239,17 +250,6 @@ impl Store {
         damaged.into_iter().next().map_or(Ok(()), |what| Err(self.damaged(what)))
     }
 
-    /// Refuses optima of the months that are to be averaged anew where one is not as it was written; ends early where `stop`
-    /// says so.
-    ///
-    /// # Errors
-    /// [`StoreError::Damaged`], [`StoreError::Refused`].
-    pub fn check_stale_months(&mut self, stop: &dyn Fn() -> bool) -> Result<(), StoreError> {
-        let of_stale_months = "SELECT p.* FROM hourly_sample AS s JOIN optimum_point AS p USING (sample_id)
-            WHERE s.month IN (SELECT month FROM stale_month)";
-        self.refuse_damaged(OPTIMA, of_stale_months, stop)
-    }
-
     /// Refuses simulated missions of the months that are to be averaged anew where one is not as it was written; ends early
     /// where `stop` says so.
     ///
@@ -301,10 +301,19 @@ impl Store {
     }
 }
 
+/// Which row of a table.
+fn place((table, key): (&str, &[&str]), row: &SqliteRow) -> String {
+    let text = |column: &&str| {
+        let value = row.try_get_unchecked::<String, _>(*column).unwrap_or_default();
+        format!(", {column} {value}")
+    };
+    format!("{table}{}", key.iter().map(text).collect::<String>())
+}
+
 /// Looks at the rows of a query on a table, one by one.
 async fn check_rows(
     c: &mut SqliteConnection,
-    (table, key): Table,
+    table: Table,
     sql: &str,
     checked: &mut Checked,
     stop: &dyn Fn() -> bool,
@@ -315,11 +324,7 @@ async fn check_rows(
     while let Some(row) = rows.try_next().await? {
         checked.count += 1;
         if !is_whole(&row, &mut hash)? {
-            let text = |column: &&str| {
-                let value = row.try_get_unchecked::<String, _>(*column).unwrap_or_default();
-                format!("{column} {value}")
-            };
-            checked.damaged.push(format!("{table}, {}", key.iter().map(text).collect::<Vec<_>>().join(", ")));
+            checked.damaged.push(place(table, &row));
         }
         if checked.count.is_multiple_of(ROWS) && stop() {
             break;

@@ -6,7 +6,7 @@ use solve::Method;
 use sqlx::Row;
 use sqlx::sqlite::{SqliteConnection, SqliteRow};
 
-use crate::checks::{commit, whole};
+use crate::checks::{commit, seal_averages, whole};
 use crate::row::{Insert, begin, window, word};
 use crate::{Store, StoreError};
 
@@ -144,6 +144,8 @@ impl Store {
                     .await?;
                 change.grid.window_ids.push(row.try_get("window_id")?);
             }
+            // What a design or window had in tables of sums has gone with it.
+            seal_averages(&mut tx).await?;
             commit(tx).await?;
             (change.grid.designs, change.grid.windows) = (designs.to_vec(), windows.to_vec());
             Ok(change)

@@ -1,7 +1,7 @@
 //! Hourly samples, and segments that gave none.
 
 use cabin::Disturbances;
-use ingest::sample::Sample;
+use ingest::sample::{LocalClock, Sample};
 use ingest::{ExcludedSegment, FileKind, FileRecord};
 use sqlx::Row;
 use sqlx::sqlite::{SqliteConnection, SqliteRow};
@@ -66,8 +66,9 @@ impl Store {
                 let file = *files.get(&sample.segment.source_path).ok_or_else(unknown)?;
                 match stored.remove(&sample.id) {
                     Some(s) if s == *sample => {}
-                    // The same values, made from something that differs elsewhere.
-                    Some(s) if (Sample { key: sample.key.clone(), ..s.clone() }) == *sample => {
+                    // The same values, made from something that differs elsewhere, or without a clock yet.
+                    Some(s) if (Sample { key: sample.key.clone(), clock: sample.clock, ..s.clone() }) == *sample => {
+                        put_clock(&mut tx, sample).await?;
                         let sql = "UPDATE hourly_sample SET sample_key = ? WHERE sample_id = ?";
                         sqlx::query(sql).bind(&sample.key).bind(sample.id).execute(&mut *tx).await?;
                     }
@@ -142,9 +143,20 @@ async fn insert_sample(c: &mut SqliteConnection, file: i64, s: &Sample) -> Resul
         .set("shadow_fraction", d.shadow_fraction)?
         .set("interpolated_s", s.interpolated_s)?
         .set("sample_key", s.key.as_str())?
-        .execute(c)
+        .execute(&mut *c)
         .await?;
-    Ok(())
+    put_clock(c, s).await
+}
+
+async fn put_clock(c: &mut SqliteConnection, s: &Sample) -> Result<(), StoreError> {
+    let Some(clock) = s.clock else { return Ok(()) };
+    let row = Insert::replacing("sample_clock").set("sample_id", s.id)?;
+    row.set("local_hour", clock.hour)?.set("weekday", clock.weekday)?.execute(c).await.map(|_| ())
+}
+
+fn clock(r: &SqliteRow) -> Result<Option<LocalClock>, sqlx::Error> {
+    let hour: Option<u8> = r.try_get("local_hour")?;
+    hour.map(|hour| Ok(LocalClock { hour, weekday: r.try_get("weekday")? })).transpose()
 }
 
 pub(crate) fn sample(r: &SqliteRow) -> Result<Sample, sqlx::Error> {
@@ -163,14 +175,16 @@ pub(crate) fn sample(r: &SqliteRow) -> Result<Sample, sqlx::Error> {
         },
         solar_azimuth_rad: r.try_get("solar_azimuth_rad")?,
         interpolated_s: r.try_get("interpolated_s")?,
+        clock: clock(r)?,
         key: r.try_get("sample_key")?,
         segment,
     })
 }
 
 async fn stored_samples(c: &mut SqliteConnection, damage: Damage<'_>) -> Result<BTreeMap<i64, Sample>, StoreError> {
-    let sql = "SELECT s.*, f.path AS source_path, g.distance_m, g.vehicle_power_w, g.route
+    let sql = "SELECT s.*, f.path AS source_path, g.distance_m, g.vehicle_power_w, g.route, k.local_hour, k.weekday
         FROM hourly_sample AS s JOIN source_file AS f USING (source_file_id)
+        LEFT JOIN sample_clock AS k ON k.sample_id = s.sample_id
         LEFT JOIN mission_segment AS g ON g.source_file_id = s.source_file_id AND g.segment = s.segment";
     let rows = sqlx::query(sql).fetch_all(c).await?;
     whole(damage, "hourly_sample", &rows)?;

@@ -119,9 +119,10 @@ impl Store {
             let mut traces = Vec::new();
             for r in sqlx::query(sql).fetch_all(&mut *c).await? {
                 let id: i64 = r.try_get("trace_id")?;
-                let sql = "SELECT s.*, f.path AS source_path, g.distance_m, g.vehicle_power_w, g.route, p.*
+                let sql = "SELECT s.*, f.path AS source_path, g.distance_m, g.vehicle_power_w, g.route, k.local_hour, k.weekday, p.*
                     FROM mission_trace AS t
                     JOIN hourly_sample AS s USING (source_file_id) JOIN source_file AS f USING (source_file_id)
+                    LEFT JOIN sample_clock AS k ON k.sample_id = s.sample_id
                     LEFT JOIN mission_segment AS g ON g.source_file_id = s.source_file_id AND g.segment = s.segment
                     JOIN optimum_point AS p
                         ON p.sample_id = s.sample_id AND p.design_id = t.design_id AND p.window_id = t.window_id

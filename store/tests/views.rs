@@ -13,7 +13,9 @@ use ingest::{ExcludedSegment, FileKind, FileRecord, FileStamp, Finding, FindingK
 use proptest::prelude::*;
 use solve::Method;
 use std::collections::BTreeSet;
-use store::{Counts, DesignRow, MissingOptima, NewOptimum, RecordedStage, RunEnd, StageRecord, Store, StoreError};
+use store::{
+    Counts, DesignRow, Energy, MissingOptima, NewOptimum, RecordedStage, RunEnd, StageRecord, Store, StoreError,
+};
 use tempfile::TempDir;
 
 fn window(limit: f64) -> ComfortWindow {
@@ -105,6 +107,7 @@ fn sample(id: i64, path: &str, month: u8) -> Sample {
             door_open_fraction: segment.door_open_fraction,
         },
         solar_azimuth_rad: std::f64::consts::FRAC_PI_2,
+        clock: None,
         interpolated_s: 0.0,
         key: format!("key {id}"),
         segment,
@@ -170,7 +173,13 @@ fn filled(store: &mut Store) {
     }
     store.put_optima(&change.grid, points.iter().map(|(id, optimum)| NewOptimum::of(*id, optimum))).unwrap();
     assert!(store.annual().unwrap().is_empty(), "averages show before the stage is complete");
-    store.complete_optima(&StageRecord { key: "k".to_owned(), result: "[]".to_owned() }).unwrap();
+    store
+        .complete_optima(
+            &StageRecord { key: "k".to_owned(), result: "[]".to_owned() },
+            &change.grid,
+            &Energy::default(),
+        )
+        .unwrap();
     let stored = store.optima(&change.grid, 1, 4).unwrap();
     assert_eq!(stored.len(), points.len());
     for (row, (id, optimum)) in stored.iter().zip(&points) {
@@ -297,6 +306,8 @@ fn prop_a_changed_design_alone_loses_its_optima() {
     assert_eq!(gaps, [MissingOptima { points: vec![(0, 0)], samples: vec![1, 2, 3, 4] }]);
     assert_eq!(store.put_grid(&[design("ptc", "x")], &[window(0.5)]).unwrap().removed, 2);
     assert_eq!(store.query_text("SELECT count(*) FROM optimum").unwrap(), [["0"]]);
+    // What has gone on purpose is no damage.
+    store.check_averages().unwrap();
 }
 
 #[test]
@@ -329,7 +340,9 @@ fn prop_averages_are_those_of_the_last_complete_stage_and_only_changed_months_ar
     let grid = store.grid().unwrap();
     let optima = [0, 1].map(|d| (4, solved(d, OperatingMode::Cooling, 700.0)));
     store.put_optima(&grid, optima.iter().map(|(id, o)| NewOptimum::of(*id, o))).unwrap();
-    store.complete_optima(&StageRecord { key: "k2".to_owned(), result: "[]".to_owned() }).unwrap();
+    store
+        .complete_optima(&StageRecord { key: "k2".to_owned(), result: "[]".to_owned() }, &grid, &Energy::default())
+        .unwrap();
     let monthly: Vec<_> = store.monthly().unwrap().iter().map(|m| m.hvac_power_w).collect();
     assert_eq!(monthly, [2000.0, 700.0, 750.0, 700.0].map(Some));
     assert_eq!(store.annual().unwrap()[0].hvac_power_w, Some(1350.0));

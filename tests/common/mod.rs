@@ -15,7 +15,7 @@ use store::Store;
 use tempfile::TempDir;
 
 /// All that a database says of a study, but for when and by which run.
-pub const CONTENT: [&str; 23] = [
+pub const CONTENT: [&str; 30] = [
     "SELECT * FROM sample",
     "SELECT * FROM optimum",
     "SELECT design, pmv_min, pmv_max, month, hvac_power_w, heating_power_w, cooling_power_w, sample_count, unsolved_count,
@@ -46,6 +46,17 @@ pub const CONTENT: [&str; 23] = [
         static_mean_hvac_power_w, mean_abs_pmv, static_mean_abs_pmv, outside_fraction, mission_count FROM control_class",
     "SELECT design, pmv_min, pmv_max, controller, mission, minute, ambient_temperature_c, setpoint_c,
         cabin_temperature_c, pmv, pmv_15min, air_unit_power_w, hvac_power_w FROM control_trace",
+    "SELECT design, pmv_min, pmv_max, sorted_by, class, class_order, weight, hvac_power_w, kwh_per_km,
+        vehicle_power_share, sample_count FROM energy_class",
+    "SELECT design, pmv_min, pmv_max, kwh_per_operating_hour, kwh_per_km, operating_hours_per_bus_year,
+        kwh_per_bus_year, vehicle_power_share FROM annual_energy",
+    "SELECT design, pmv_min, pmv_max, heating_limit_w, cooling_limit_w, over_limit_count, over_limit_weight,
+        unmet_heat_w, infeasible_weight FROM unmet_demand",
+    "SELECT design, pmv_min, pmv_max, month, sample_count, cabin_to_shell_w, door_w, air_unit_heat_w, solar_interior_w,
+        heating_lift_k, heating_cop, cooling_lift_k, cooling_cop, over_limit_count, unmet_heat_w FROM heat_flow_monthly",
+    "SELECT quantity, bin_from, bin_to, sample_count, weight FROM disturbance_histogram",
+    "SELECT * FROM heat_flow",
+    "SELECT month, classes FROM class_month",
     "SELECT * FROM excluded_segment",
     "SELECT path, kind, blake3, bytes, rows, first_utc, last_utc, outcome, reading_key FROM source_file",
     "SELECT f.path, q.kind, q.count, q.line, q.column_name, q.message, q.position

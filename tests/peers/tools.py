@@ -25,6 +25,11 @@ import polars
 TABLES = [
     "annual_average",
     "monthly_average",
+    "annual_energy",
+    "energy_class",
+    "unmet_demand",
+    "heat_flow_monthly",
+    "disturbance_histogram",
     "simulation_annual",
     "simulation_class",
     "control_annual",

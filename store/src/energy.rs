@@ -1,0 +1,364 @@
+//! Where a year's energy goes: the bus as the optima know it, sums of a month by class, and what a year comes to of them.
+
+use cabin::{HeatFlows, HeatTransfer};
+use sqlx::Row;
+use sqlx::sqlite::SqliteConnection;
+use std::collections::BTreeSet;
+
+use crate::checks::{commit, seal_averages};
+use crate::row::{Insert, begin};
+use crate::{Store, StoreError, StoredGrid};
+
+/// What the optima are found with, besides the designs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BusRow {
+    /// Coefficients.
+    pub transfer: HeatTransfer,
+    /// Heat of a passenger in W.
+    pub passenger_heat_w: f64,
+    /// Heat of electric components in W.
+    pub other_heat_w: f64,
+    /// Electric power of the air unit in W that the vehicle can give in heating and in cooling, by design.
+    pub limits_w: Vec<[f64; 2]>,
+}
+
+/// What samples have in common.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Class {
+    /// By what samples are sorted: `month`, `route`, ….
+    pub sorted_by: String,
+    /// Place among the classes of the same kind.
+    pub order: i64,
+    /// Name.
+    pub name: String,
+}
+
+/// Sums over the solved samples of a class.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct ClassSum {
+    /// Samples.
+    pub samples: f64,
+    /// HVAC power in W.
+    pub power_w: f64,
+    /// HVAC energy in J of samples with a distance.
+    pub driven_energy_j: f64,
+    /// Distance in m.
+    pub distance_m: f64,
+    /// HVAC power in W of samples with a power of the vehicle.
+    pub drawn_power_w: f64,
+    /// Power of the whole vehicle in W.
+    pub vehicle_power_w: f64,
+}
+
+/// The sums of a month.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MonthSums {
+    /// Local month, 1 … 12.
+    pub month: u8,
+    /// The classes, in rising order.
+    pub classes: Vec<Class>,
+    /// A sum for each class, for every design and within it every window of the study.
+    pub cells: Vec<Vec<ClassSum>>,
+}
+
+/// Mean lift in K and COP; `None` where the air unit never works that way.
+pub type LiftCop = Option<(f64, f64)>;
+
+/// Heat flows of a design and window: means over the solved samples of a month.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MonthFlows {
+    /// Local month, 1 … 12.
+    pub month: u8,
+    /// Place of the design in the study.
+    pub design: usize,
+    /// Place of the window.
+    pub window: usize,
+    /// Solved samples.
+    pub samples: u64,
+    /// Means.
+    pub flows: HeatFlows,
+    /// Mean lift in K and COP while the air unit heats; `None` where it never does.
+    pub heating: LiftCop,
+    /// While it cools.
+    pub cooling: LiftCop,
+    /// Samples that ask for more electric power than the vehicle can give.
+    pub over_limit: u64,
+    /// Mean heat or cooling in W above the limit.
+    pub unmet_heat_w: f64,
+}
+
+/// What a class of samples comes to in the year.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ClassYear {
+    /// Place of the design in the study.
+    pub design: usize,
+    /// Place of the window.
+    pub window: usize,
+    /// The class.
+    pub class: Class,
+    /// Share in the year.
+    pub weight: f64,
+    /// Mean HVAC power in W.
+    pub hvac_power_w: f64,
+    /// HVAC energy for a distance; `None` where the telemetry has no distances.
+    pub kwh_per_km: Option<f64>,
+    /// Share of HVAC in what the vehicle drew.
+    pub vehicle_power_share: Option<f64>,
+    /// Samples.
+    pub samples: u64,
+}
+
+/// How often a disturbance lies where.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Bin {
+    /// A column of the view `sample`.
+    pub quantity: &'static str,
+    /// Lower end, which is in it.
+    pub from: f64,
+    /// Upper end.
+    pub to: f64,
+    /// Samples.
+    pub samples: u64,
+    /// Share in the year.
+    pub weight: f64,
+}
+
+/// What completing the optima writes besides averages.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Energy {
+    /// Months that have changed.
+    pub sums: Vec<MonthSums>,
+    /// Of the same months.
+    pub flows: Vec<MonthFlows>,
+    /// The year.
+    pub classes: Vec<ClassYear>,
+    /// The disturbances.
+    pub bins: Vec<Bin>,
+}
+
+const SUMS: usize = 6;
+/// Rows of one INSERT.
+const ROWS: usize = 256;
+
+impl ClassSum {
+    fn values(&self) -> [f64; SUMS] {
+        let Self { samples, power_w, driven_energy_j, distance_m, drawn_power_w, vehicle_power_w } = *self;
+        [samples, power_w, driven_energy_j, distance_m, drawn_power_w, vehicle_power_w]
+    }
+
+    fn of([samples, power_w, driven_energy_j, distance_m, drawn_power_w, vehicle_power_w]: [f64; SUMS]) -> Self {
+        Self { samples, power_w, driven_energy_j, distance_m, drawn_power_w, vehicle_power_w }
+    }
+}
+
+impl Store {
+    /// Makes the bus of the database this one. What rests on another goes, or is added up again.
+    ///
+    /// # Errors
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
+    pub fn put_bus(&mut self, grid: &StoredGrid, bus: &BusRow) -> Result<(), StoreError> {
+        self.drive(async |c| {
+            let mut tx = begin(c).await?;
+            put_transfer(&mut tx, bus).await?;
+            let mut stored = BTreeSet::new();
+            for r in sqlx::query("SELECT * FROM power_limit").fetch_all(&mut *tx).await? {
+                let limits: [f64; 2] = [r.try_get("heating_limit_w")?, r.try_get("cooling_limit_w")?];
+                stored.insert((r.try_get::<i64, _>("design_id")?, limits.map(f64::to_bits)));
+            }
+            let wanted = |(id, limits): (&i64, &[f64; 2])| (*id, limits.map(f64::to_bits));
+            if stored != grid.design_ids.iter().zip(&bus.limits_w).map(wanted).collect() {
+                for (id, [heating_w, cooling_w]) in grid.design_ids.iter().zip(&bus.limits_w) {
+                    let row = Insert::replacing("power_limit").set("design_id", id)?;
+                    row.set("heating_limit_w", heating_w)?.set("cooling_limit_w", cooling_w)?.execute(&mut tx).await?;
+                }
+                for month in 1..=12 {
+                    sqlx::query("INSERT OR IGNORE INTO stale_month VALUES (?)").bind(month).execute(&mut *tx).await?;
+                }
+            }
+            seal_averages(&mut tx).await?;
+            commit(tx).await
+        })
+    }
+
+    /// Months whose optima are to be averaged anew, in rising order.
+    ///
+    /// # Errors
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
+    pub fn stale_months(&mut self) -> Result<Vec<u8>, StoreError> {
+        self.select("SELECT month FROM stale_month ORDER BY month", |r| r.try_get("month"))
+    }
+
+    /// The sums of the months that are not to be averaged anew, in rising order.
+    ///
+    /// # Errors
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
+    pub fn month_sums(&mut self, grid: &StoredGrid) -> Result<Vec<MonthSums>, StoreError> {
+        self.drive(async |c| {
+            let mut all = Vec::new();
+            let sql = "SELECT * FROM class_month WHERE month NOT IN (SELECT month FROM stale_month) ORDER BY month";
+            for r in sqlx::query(sql).fetch_all(&mut *c).await? {
+                let month: u8 = r.try_get("month")?;
+                let classes: Vec<(String, i64, String)> =
+                    serde_json::from_str(r.try_get("classes")?).map_err(|e| sqlx::Error::Decode(e.into()))?;
+                let class = |(sorted_by, order, name)| Class { sorted_by, order, name };
+                let classes: Vec<Class> = classes.into_iter().map(class).collect();
+                let mut cells = vec![Vec::new(); grid.designs.len() * grid.windows.len()];
+                let sql = "SELECT * FROM class_sum WHERE month = ?";
+                for r in sqlx::query(sql).bind(month).fetch_all(&mut *c).await? {
+                    let (design, window) =
+                        (grid.design(r.try_get("design_id")?)?, grid.window(r.try_get("window_id")?)?);
+                    cells[design * grid.windows.len() + window] = unpack(r.try_get("sums")?);
+                }
+                cells.iter_mut().for_each(|cell| cell.resize(classes.len(), ClassSum::default()));
+                all.push(MonthSums { month, classes, cells });
+            }
+            Ok(all)
+        })
+    }
+}
+
+async fn put_transfer(c: &mut SqliteConnection, bus: &BusRow) -> Result<(), StoreError> {
+    let t = &bus.transfer;
+    let row = Insert::replacing("heat_transfer")
+        .set("one", 1)?
+        .set("convection_shell_inside_w_k", t.convection_shell_inside_w_k)?
+        .set("convection_interior_w_k", t.convection_interior_w_k)?
+        .set("convection_radiant_heater_w_k", t.convection_radiant_heater_w_k)?
+        .set("convection_shell_outside_w_k", t.convection_shell_outside_w_k)?
+        .set("conduction_shell_w_k", t.conduction_shell_w_k)?
+        .set("radiation_heater_interior_w_k4", t.radiation_heater_interior_w_k4)?
+        .set("radiation_heater_shell_w_k4", t.radiation_heater_shell_w_k4)?
+        .set("radiation_interior_shell_w_k4", t.radiation_interior_shell_w_k4)?
+        .set("radiation_shell_outside_w_k4", t.radiation_shell_outside_w_k4)?
+        .set("passenger_heat_w", bus.passenger_heat_w)?
+        .set("other_heat_w", bus.other_heat_w)?;
+    row.execute(c).await.map(|_| ())
+}
+
+fn pack(sums: &[ClassSum]) -> Vec<u8> {
+    sums.iter().flat_map(ClassSum::values).flat_map(f64::to_le_bytes).collect()
+}
+
+fn unpack(bytes: &[u8]) -> Vec<ClassSum> {
+    let (values, _) = bytes.as_chunks::<8>();
+    let values: Vec<f64> = values.iter().map(|b| f64::from_le_bytes(*b)).collect();
+    let (sums, _) = values.as_chunks::<SUMS>();
+    sums.iter().map(|sum| ClassSum::of(*sum)).collect()
+}
+
+/// Replaces the year, and of the months those that have changed.
+pub(crate) async fn put(
+    c: &mut SqliteConnection,
+    run_id: i64,
+    grid: &StoredGrid,
+    energy: &Energy,
+) -> Result<(), StoreError> {
+    for table in ["class_month", "class_sum", "heat_flow_monthly"] {
+        // The text is built from constants alone.
+        let sql = format!("DELETE FROM {table} WHERE month IN (SELECT month FROM stale_month)");
+        sqlx::query(sqlx::AssertSqlSafe(sql)).execute(&mut *c).await?;
+    }
+    for table in ["energy_class", "disturbance_histogram"] {
+        sqlx::query(sqlx::AssertSqlSafe(format!("DELETE FROM {table}"))).execute(&mut *c).await?;
+    }
+    for month in &energy.sums {
+        put_month(c, grid, month).await?;
+    }
+    for flows in &energy.flows {
+        put_flows(c, run_id, grid, flows).await?;
+    }
+    for classes in energy.classes.chunks(ROWS) {
+        put_classes(c, run_id, grid, classes).await?;
+    }
+    for bin in &energy.bins {
+        let row = Insert::into("disturbance_histogram")
+            .set("quantity", bin.quantity)?
+            .set("bin_from", bin.from)?
+            .set("bin_to", bin.to)?
+            .set("sample_count", bin.samples.cast_signed())?
+            .set("weight", bin.weight)?
+            .set("run_id", run_id)?;
+        row.execute(&mut *c).await?;
+    }
+    Ok(())
+}
+
+async fn put_classes(
+    c: &mut SqliteConnection,
+    run_id: i64,
+    grid: &StoredGrid,
+    classes: &[ClassYear],
+) -> Result<(), StoreError> {
+    let mut rows = Insert::into("energy_class");
+    for (n, class) in classes.iter().enumerate() {
+        rows = if n == 0 { rows } else { rows.another() };
+        rows = point(rows, grid, class.design, class.window)?
+            .set("sorted_by", class.class.sorted_by.clone())?
+            .set("class", class.class.name.clone())?
+            .set("class_order", class.class.order)?
+            .set("weight", class.weight)?
+            .set("hvac_power_w", class.hvac_power_w)?
+            .set("kwh_per_km", class.kwh_per_km)?
+            .set("vehicle_power_share", class.vehicle_power_share)?
+            .set("sample_count", class.samples.cast_signed())?
+            .set("run_id", run_id)?;
+    }
+    rows.execute(c).await.map(|_| ())
+}
+
+async fn put_month(c: &mut SqliteConnection, grid: &StoredGrid, month: &MonthSums) -> Result<(), StoreError> {
+    let classes: Vec<(&str, i64, &str)> =
+        month.classes.iter().map(|c| (c.sorted_by.as_str(), c.order, c.name.as_str())).collect();
+    let classes = serde_json::json!(classes).to_string();
+    Insert::into("class_month").set("month", month.month)?.set("classes", classes)?.execute(&mut *c).await?;
+    for (n, cell) in month.cells.iter().enumerate() {
+        let (design, window) = (n / grid.windows.len(), n % grid.windows.len());
+        let row = Insert::into("class_sum")
+            .set("month", month.month)?
+            .set("design_id", grid.design_ids[design])?
+            .set("window_id", grid.window_ids[window])?
+            .set("sums", pack(cell))?;
+        row.execute(&mut *c).await?;
+    }
+    Ok(())
+}
+
+async fn put_flows(c: &mut SqliteConnection, run_id: i64, grid: &StoredGrid, m: &MonthFlows) -> Result<(), StoreError> {
+    let (f, lift, cop) = (&m.flows, |side: LiftCop| side.map(|s| s.0), |side: LiftCop| side.map(|s| s.1));
+    let row = point(Insert::into("heat_flow_monthly"), grid, m.design, m.window)?
+        .set("month", m.month)?
+        .set("sample_count", m.samples.cast_signed())?
+        .set("cabin_to_shell_w", f.convection_shell_inside_w)?
+        .set("interior_to_cabin_w", f.convection_interior_w)?
+        .set("shell_to_ambient_w", f.convection_shell_outside_w)?
+        .set("heater_to_cabin_w", f.convection_radiant_heater_w)?
+        .set("through_shell_w", f.conduction_shell_w)?
+        .set("shell_radiation_w", f.radiation_shell_outside_w)?
+        .set("heater_to_shell_w", f.radiation_heater_shell_w)?
+        .set("heater_to_interior_w", f.radiation_heater_interior_w)?
+        .set("interior_to_shell_w", f.radiation_interior_shell_w)?
+        .set("door_w", f.door_w)?
+        .set("passengers_w", f.passengers_w)?
+        .set("other_w", f.other_w)?
+        .set("air_unit_heat_w", f.air_unit_w)?
+        .set("radiant_heater_power_w", f.radiant_heater_power_w)?
+        .set("solar_interior_w", f.solar.interior_w)?
+        .set("solar_shell_inside_w", f.solar.shell_inside_w)?
+        .set("solar_shell_outside_w", f.solar.shell_outside_w)?
+        .set("heating_lift_k", lift(m.heating))?
+        .set("heating_cop", cop(m.heating))?
+        .set("cooling_lift_k", lift(m.cooling))?
+        .set("cooling_cop", cop(m.cooling))?
+        .set("over_limit_count", m.over_limit.cast_signed())?
+        .set("unmet_heat_w", m.unmet_heat_w)?
+        .set("run_id", run_id)?;
+    row.execute(c).await.map(|_| ())
+}
+
+fn point(row: Insert, grid: &StoredGrid, design: usize, window: usize) -> Result<Insert, StoreError> {
+    let window = grid.windows[window];
+    row.set("design", grid.designs[design].name.clone())?
+        .set("pmv_limit", window.pmv_limit())?
+        .set("pmv_min", window.pmv_min())?
+        .set("pmv_max", window.pmv_max())
+}
