@@ -22,8 +22,12 @@ pub struct Args {
     pub log: Log,
 
     /// Only warnings and errors on stderr.
-    #[arg(long, global = true)]
+    #[arg(long, short, global = true, conflicts_with = "verbose")]
     pub quiet: bool,
+
+    /// Also details on stderr.
+    #[arg(long, short, global = true)]
+    pub verbose: bool,
 
     /// Read every input again, also those that look as they did.
     #[arg(long, global = true)]
@@ -106,6 +110,31 @@ pub enum Command {
         #[arg(long, value_name = "FILE")]
         db: Option<PathBuf>,
     },
+    /// Which settings, inputs and samples differ between two databases or two runs, and what that does to the annual averages.
+    /// Exit status 1 where anything differs.
+    Compare(CompareArgs),
+    /// Write the database's tables, or look-up tables for fleet planners, as files into a folder.
+    Export(ExportArgs),
+    /// What tables, views and columns of the database are, and questions with the queries that answer them.
+    Dictionary {
+        #[command(flatten)]
+        study: StudyArgs,
+        /// How it is said.
+        #[arg(long, value_enum, default_value_t = DictionaryFormat::Markdown)]
+        format: DictionaryFormat,
+    },
+    /// The JSON schema of the study file, for editors.
+    Schema,
+    /// Completions of this command line for a shell.
+    Completions {
+        /// The shell.
+        shell: clap_complete::Shell,
+    },
+    /// Write manual pages into a folder.
+    Man {
+        /// The folder, such as ~/.local/share/man/man1.
+        dir: PathBuf,
+    },
     /// What the database holds, what is pending, what failed.
     Status {
         #[command(flatten)]
@@ -123,6 +152,9 @@ pub enum Command {
         study: StudyArgs,
         #[command(flatten)]
         point: PointArgs,
+        /// As one JSON object.
+        #[arg(long)]
+        json: bool,
     },
 }
 
@@ -210,6 +242,75 @@ pub enum Inputs {
     Missions,
     /// Weather.
     Weather,
+}
+
+#[derive(Debug, ClapArgs)]
+pub struct CompareArgs {
+    /// A database, or a study file or its folder, whose database is meant.
+    pub one: PathBuf,
+
+    /// Another one.
+    #[arg(required_unless_present = "runs", conflicts_with = "runs")]
+    pub other: Option<PathBuf>,
+
+    /// Two runs of the one database instead, the earlier one first; the table `run` has their numbers.
+    #[arg(long, num_args = 2, value_names = ["FIRST", "SECOND"])]
+    pub runs: Vec<i64>,
+
+    /// How it is said.
+    #[arg(long, value_enum, default_value_t = CompareFormat::Text)]
+    pub format: CompareFormat,
+}
+
+/// How differences are said.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum CompareFormat {
+    /// Lines for people.
+    Text,
+    /// Comma-separated values: a row for each difference and each annual average.
+    Csv,
+}
+
+#[derive(Debug, ClapArgs)]
+pub struct ExportArgs {
+    #[command(flatten)]
+    pub study: StudyArgs,
+
+    /// What is written: all documented tables as Parquet or CSV, or look-up tables of HVAC consumption.
+    #[arg(long, value_enum)]
+    pub format: ExportFormat,
+
+    /// Folder: a new one, an empty one, or one that holds an export, which is replaced.
+    #[arg(long, value_name = "DIR")]
+    pub to: PathBuf,
+
+    /// With lut: people on board at a level of loading of 1.
+    #[arg(long, value_name = "PEOPLE", default_value_t = 160.0)]
+    pub capacity: f64,
+}
+
+/// What is exported.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ExportFormat {
+    /// Apache Parquet, a folder a design.
+    Parquet,
+    /// Comma-separated values, a folder a design.
+    Csv,
+    /// HVAC share of the consumption, in the columns of SimBA and eFLIPS.
+    Lut,
+}
+
+/// How the dictionary is said.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum DictionaryFormat {
+    /// Tables of columns with type, unit and meaning.
+    Markdown,
+    /// Questions and their queries.
+    Questions,
+    /// Everything as one JSON object.
+    Json,
+    /// Metadata for Datasette: datasette study.db --metadata FILE.
+    Datasette,
 }
 
 #[derive(Debug, ClapArgs)]

@@ -11,7 +11,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use tracing_subscriber::filter::LevelFilter;
 
-use crate::args::Log;
+use crate::args::{Args, Log};
 use crate::failure::Failure;
 
 static STOP: OnceLock<Arc<AtomicBool>> = OnceLock::new();
@@ -57,8 +57,12 @@ pub struct Console {
 }
 
 impl Console {
-    pub fn new(log: Log, quiet: bool) -> Self {
-        let level = if quiet { LevelFilter::WARN } else { LevelFilter::INFO };
+    pub fn new(&Args { log, quiet, verbose, .. }: &Args) -> Self {
+        let level = match (quiet, verbose) {
+            (true, _) => LevelFilter::WARN,
+            (_, true) => LevelFilter::DEBUG,
+            _ => LevelFilter::INFO,
+        };
         let lines = tracing_subscriber::fmt().with_writer(|| LogSink).with_max_level(level).with_target(false);
         match log {
             Log::Text => lines.without_time().with_ansi(stderr().is_terminal()).init(),
@@ -118,7 +122,10 @@ impl Progress for Console {
     fn stage_ended(&self, end: &StageEnd) {
         let Work { computed, withdrawn, total, message } = &end.work;
         match self.log {
-            Log::Text => tracing::info!("{message}"),
+            Log::Text => {
+                tracing::info!("{message}");
+                tracing::debug!("{} took {:.2} s", end.stage.name(), end.duration_s);
+            }
             Log::Json => {
                 let (run_id, stage, duration_s) = (end.run_id, end.stage.name(), end.duration_s);
                 tracing::info!(run_id, stage, computed, withdrawn, total, duration_s, "{message}");

@@ -4,8 +4,10 @@
 //! of it. Results go to stdout, progress and log lines to stderr; the exit status is that of [`failure`].
 
 mod args;
+mod compare;
 mod console;
 mod failure;
+mod offer;
 mod prepare;
 mod print;
 
@@ -18,7 +20,7 @@ use std::time::{Duration, Instant};
 use args::{Args, Command, Log, StudyArgs};
 use console::{Console, say};
 use failure::{Ending, Failure};
-use pipeline::{Options, Part, Patience, Point, Stage, Wanted};
+use pipeline::{Export, Format, Loading, Options, Part, Patience, Point, Stage, Wanted};
 use study::Study;
 
 /// Missions come and go as blocks of megabytes: the system's allocator gives them back to the kernel each time, which
@@ -31,7 +33,7 @@ const STUDY_FILE: &str = "study.toml";
 
 fn main() -> ExitCode {
     let args = Args::parse();
-    let console = Console::new(args.log, args.quiet);
+    let console = Console::new(&args);
     match dispatch(&args, &console) {
         Ok(ending) => ending.code(),
         Err(failure) => {
@@ -131,15 +133,31 @@ fn dispatch(args: &Args, console: &Console) -> Result<Ending, Failure> {
             say(format_args!("{} is written", file.display()))?;
             Ok(Ending::Done)
         }
+        Command::Compare(typed) => compare::compare(typed),
+        Command::Export(typed) => {
+            let study = open(&typed.study)?;
+            let wanted = match typed.format {
+                args::ExportFormat::Parquet => Export::Tables(Format::Parquet),
+                args::ExportFormat::Csv => Export::Tables(Format::Csv),
+                args::ExportFormat::Lut => Export::LookUpTables(Loading { capacity: typed.capacity }),
+            };
+            pipeline::export(&study, wanted, &typed.to, console)?;
+            say(format_args!("{} is written; {} says what is in it", typed.to.display(), "datapackage.json"))?;
+            Ok(Ending::Done)
+        }
+        Command::Dictionary { study, format } => offer::dictionary(study, *format),
+        Command::Schema => offer::schema(),
+        Command::Completions { shell } => offer::completions(*shell),
+        Command::Man { dir } => offer::man(dir),
         Command::Status { study, why, json } => {
             let study = open(study)?;
             let status = pipeline::status(&study)?;
             let plan = if *why { Some(pipeline::plan(&study, args.rehash)?) } else { None };
             print::status(&status, plan.as_deref(), *json)
         }
-        Command::Show { study, point } => {
+        Command::Show { study, point, json } => {
             let wanted = Point { sample: point.sample, design: point.design.clone(), pmv_limit: point.pmv_limit };
-            print::shown(&wanted, &pipeline::show(&open(study)?, &wanted)?, point.figure.as_deref())
+            print::shown(&wanted, &pipeline::show(&open(study)?, &wanted)?, point.figure.as_deref(), *json)
         }
     }
 }
@@ -147,6 +165,14 @@ fn dispatch(args: &Args, console: &Console) -> Result<Ending, Failure> {
 /// Runs stages and says what came of it.
 fn run(study: &Study, stages: &[Stage], options: &Options, console: &Console) -> Result<Ending, Failure> {
     let begin = Instant::now();
+    tracing::debug!(
+        "study {:?}, hash {}, database {}, {} threads, busclimate {}",
+        study.name,
+        study.hash,
+        study.database.display(),
+        rayon::current_num_threads(),
+        pipeline::PROGRAM_VERSION
+    );
     let done = pipeline::run(study, stages, options, console)?;
     console.run_ended(&done, begin.elapsed().as_secs_f64());
     print::run(study, stages, &done, begin.elapsed())

@@ -26,10 +26,16 @@ pub fn init(dir: &Path) -> Result<(), Failure> {
         return Err(Failure::Usage(anyhow!("{} is there already; it is left as it is", path.display())));
     }
     std::fs::create_dir_all(dir)
+        .and_then(|()| std::fs::write(dir.join(study::SCHEMA_FILE), schema_text()))
         .and_then(|()| std::fs::write(&path, text))
         .with_context(|| format!("cannot write {}; check permissions and free space", path.display()))
         .map_err(Failure::Usage)?;
     say(format_args!("{} is written; put the missions, the weather and shadow.csv where it says", path.display()))
+}
+
+/// What editors check a study file by.
+fn schema_text() -> String {
+    format!("{}\n", study::schema())
 }
 
 /// The demo of a run without a study file, made once.
@@ -77,6 +83,7 @@ pub fn demo(args: &DemoArgs, console: &Console) -> Result<(), Failure> {
     let summary = demo::write(&args.dir, args.seed, &plans, weather, &|_, _| console.advance(1))
         .map_err(|e| Failure::Inputs(e.into()))?;
     console.end();
+    write_whole(&args.dir.join(study::SCHEMA_FILE), schema_text().as_bytes())?;
     // Written last: a study file that is there has all its data.
     write_whole(&path, study.as_bytes())?;
     say(format_args!(

@@ -287,7 +287,12 @@ pub fn verification(study: &str, verification: &Verification) -> Result<Ending, 
     Ok(Ending::of(violations == 0))
 }
 
-pub fn shown(point: &Point, shown: &Shown, figure: Option<&Path>) -> Result<Ending, Failure> {
+pub fn shown(point: &Point, shown: &Shown, figure: Option<&Path>, json: bool) -> Result<Ending, Failure> {
+    if json {
+        draw(point, shown, figure)?;
+        say(format_args!("{}", shown.json(&point.design)))?;
+        return Ok(Ending::Done);
+    }
     let (sample, segment, d) = (&shown.sample, &shown.sample.segment, &shown.sample.disturbances);
     say(format_args!(
         "sample {}  design {}  PMV {} … {}",
@@ -333,12 +338,18 @@ pub fn shown(point: &Point, shown: &Shown, figure: Option<&Path>) -> Result<Endi
         return Ok(Ending::Done);
     }
     flows(shown)?;
-    if let Some(path) = figure {
-        let svg = shown.figure(&point.design)?.ok_or_else(|| Failure::Inputs(anyhow!("there is nothing to draw")))?;
-        write_whole(path, svg.as_bytes())?;
+    if let Some(path) = draw(point, shown, figure)? {
         say(format_args!("\nfigure: {}", path.display()))?;
     }
     Ok(Ending::Done)
+}
+
+/// Writes the figure that is asked for.
+fn draw<'p>(point: &Point, shown: &Shown, figure: Option<&'p Path>) -> Result<Option<&'p Path>, Failure> {
+    let Some(path) = figure else { return Ok(None) };
+    let svg = shown.figure(&point.design)?.ok_or_else(|| Failure::Inputs(anyhow!("there is nothing to draw")))?;
+    write_whole(path, svg.as_bytes())?;
+    Ok(Some(path))
 }
 
 fn candidates(shown: &Shown) -> Result<(), Failure> {

@@ -149,7 +149,7 @@ fn cli_wrong_study_files_and_arguments_end_with_2() {
     fails(
         "door_open_share",
         "door_opn_share",
-        "study.toml:18:1: unknown key `door_opn_share`; did you mean `door_open_share`?",
+        "study.toml:19:1: unknown key `door_opn_share`; did you mean `door_open_share`?",
     );
     fails("latitude_deg = 47.3779", "latitude_deg = 147.0", "latitude_deg = 147 is outside -90 … 90");
     fails("\"Europe/Zurich\"", "\"Europe/Zuerich\"", "time_zone = \"Europe/Zuerich\" is not known");

@@ -95,7 +95,8 @@ fn prop_rooms_import_what_the_architecture_says() {
 #[test]
 fn prop_every_file_that_the_documents_name_is_there() {
     let mut missing = Vec::new();
-    let places = ["cabin/", "shading/", "ingest/", "solve/", "simulate/", "store/", "study/", "report/", "pipeline/"];
+    let places =
+        ["cabin/", "shading/", "ingest/", "solve/", "simulate/", "store/", "study/", "report/", "export/", "pipeline/"];
     let places: Vec<&str> = places.into_iter().chain(["src/", "tests/", "testing/", "docs/", "migrations/"]).collect();
     for path in files(root(), "md") {
         if path.starts_with(root().join("benches")) {

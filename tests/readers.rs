@@ -8,6 +8,7 @@ use common::Scratch;
 use std::collections::BTreeSet;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
 const TABLES: [&str; 4] = [
     "SELECT design, pmv_limit, hvac_power_w, sample_count, unsolved_count FROM annual_average",
@@ -43,6 +44,8 @@ fn cli_ten_readers_never_see_half_a_result() {
                         }
                         continue;
                     }
+                    // Readers of one process share their lock: without a pause they would keep a writer out for as long as they like.
+                    std::thread::sleep(Duration::from_millis(150));
                     for (table, rows) in seen(scratch).into_iter().enumerate() {
                         snapshots.lock().unwrap()[table].push(rows);
                     }

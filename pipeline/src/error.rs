@@ -1,5 +1,6 @@
 //! Why a pipeline ends early.
 
+use ::export::ExportError;
 use chrono::{DateTime, Utc};
 use ingest::{Finding, IngestError};
 use report::ReportError;
@@ -84,6 +85,9 @@ pub enum PipelineError {
     /// The report cannot be made.
     #[error(transparent)]
     Report(#[from] ReportError),
+    /// Files for other tools cannot be made.
+    #[error(transparent)]
+    Export(#[from] ExportError),
     /// A file cannot be written.
     #[error("cannot write {path}: {source}; check permissions and free space")]
     Write {

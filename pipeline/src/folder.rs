@@ -21,11 +21,23 @@ pub(crate) fn replace(folder: &Path, files: &Files<'_>, ours: &[&str], keep: &[&
     }
     let places = Places::of(folder)?;
     places.recover(ours)?;
-    match places.renew(files, ours) {
+    let write = |new: &Path| files.iter().try_for_each(|(name, bytes)| write_synced(&new.join(name), bytes));
+    match places.renew(&write, ours) {
         Err(Renew::NotHere) => one_by_one(folder, files, ours),
         Err(Renew::Failed(error)) => Err(error),
         Ok(()) => Ok(()),
     }
+}
+
+/// Makes `folder` hold what `write` puts into a new one, and what is there under other names than `ours`.
+pub(crate) fn fill(folder: &Path, ours: &[&str], write: &dyn Fn(&Path) -> Result<()>) -> Result<()> {
+    let folder = &fs::canonicalize(folder).or_else(|_| std::path::absolute(folder))?;
+    let places = Places::of(folder)?;
+    places.recover(ours)?;
+    places.renew(write, ours).map_err(|cause| match cause {
+        Renew::NotHere => Error::new(ErrorKind::PermissionDenied, "no folder can be written and renamed beside it"),
+        Renew::Failed(error) => error,
+    })
 }
 
 struct Places {
@@ -74,13 +86,12 @@ impl Places {
         Ok(())
     }
 
-    fn renew(&self, files: &Files<'_>, ours: &[&str]) -> std::result::Result<(), Renew> {
+    fn renew(&self, write: &dyn Fn(&Path) -> Result<()>, ours: &[&str]) -> std::result::Result<(), Renew> {
         if let Some(above) = self.folder.parent() {
             fs::create_dir_all(above)?;
         }
         fs::create_dir(&self.new).map_err(|_| Renew::NotHere)?;
-        let written = files.iter().try_for_each(|(name, bytes)| write_synced(&self.new.join(name), bytes));
-        if let Err(error) = written.and_then(|()| sync(&self.new)) {
+        if let Err(error) = write(&self.new).and_then(|()| sync(&self.new)) {
             // The old folder is as it was; what is half written goes.
             let _ = fs::remove_dir_all(&self.new);
             return Err(error.into());

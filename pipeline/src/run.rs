@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
-use store::{RunEnd, RunStage, SettingRow, Store};
+use store::{Change, RunEnd, RunStage, SettingRow, Store};
 use study::settings::{Setting, settings};
 use study::{Study, keys};
 
@@ -98,6 +98,8 @@ pub fn run(study: &Study, stages: &[Stage], options: &Options, progress: &dyn Pr
         let _ = store.close();
         return Err(damage);
     }
+    // What there is before the first run is no change.
+    let before = if only_report || store.last_run()?.is_none() { None } else { Some(store.basis()?) };
     let run_id = if only_report { None } else { Some(store.start_run(now(), PROGRAM_VERSION, &study.hash)?) };
     if run_id.is_some() {
         store.put_study_text(&study.hash, &study.text)?;
@@ -114,6 +116,10 @@ pub fn run(study: &Study, stages: &[Stage], options: &Options, progress: &dyn Pr
             Err(PipelineError::Interrupted) => RunEnd::Interrupted,
             Err(_) => RunEnd::Failed,
         };
+        if let Some(before) = before {
+            let changes = Change::between(&before, &store.basis()?);
+            store.put_changes(id, &changes)?;
+        }
         let input_hash = input_hash(&mut store)?;
         let reason = outcome.as_ref().err().map(ToString::to_string);
         store.end_run(id, now(), end, Some(&input_hash), summary.counts, reason.as_deref())?;

@@ -1,8 +1,10 @@
 //! One optimum, from its four binary choices down to the rows it came from.
 
-use cabin::{Cabin, Candidate, ComfortWindow, HeatFlows, Operation, PassengerViews};
+use cabin::{Cabin, Candidate, ComfortWindow, HeatFlows, Operation, PassengerViews, celsius};
+use chrono::SecondsFormat;
 use ingest::sample::Sample;
 use report::{HeatFlowFigure, heat_flow_svg};
+use serde_json::{Map, Value, json};
 use solve::SampleSolver;
 use store::OptimumRow;
 use study::Study;
@@ -80,6 +82,41 @@ pub fn show(study: &Study, point: &Point) -> Result<Shown, PipelineError> {
 }
 
 impl Shown {
+    /// All of it as JSON, with the names and units of the database.
+    #[must_use]
+    pub fn json(&self, design: &str) -> Value {
+        let (segment, d) = (&self.sample.segment, &self.sample.disturbances);
+        let candidate = |c: &Candidate| {
+            json!({
+                "radiant_heaters_on": c.devices.radiant_heaters, "air_curtain_on": c.devices.air_curtain,
+                "available": c.available, "optimum": c.operation.as_ref().map(operation),
+            })
+        };
+        let flows = |flows: &HeatFlows| {
+            let named: Map<String, Value> =
+                flows.named_w().map(|(name, w)| (name.to_owned(), json!(w))).into_iter().collect();
+            json!({ "flows_w": named, "net_w": flows.net_w() })
+        };
+        json!({
+            "sample_id": self.sample.id, "design": design, "pmv_min": self.window.pmv_min(), "pmv_max": self.window.pmv_max(),
+            "sample": {
+                "mission": segment.mission, "segment": segment.segment, "source_path": segment.source_path,
+                "first_line": segment.first_line, "last_line": segment.last_line,
+                "start_utc": segment.start.to_rfc3339_opts(SecondsFormat::Secs, true), "duration_s": segment.duration_s,
+                "month": self.sample.month, "weight": self.weight,
+                "ambient_temperature_c": celsius(d.ambient_temperature_k), "dni_w_m2": d.dni_w_m2, "dhi_w_m2": d.dhi_w_m2,
+                "solar_altitude_deg": d.solar_altitude_rad.to_degrees(), "shadow_fraction": d.shadow_fraction,
+                "passengers": d.passengers, "door_open_fraction": d.door_open_fraction,
+            },
+            "stored": self.stored.as_ref().map(|row| json!({
+                "status": row.status, "hvac_power_w": row.hvac_power_w, "runner_up_excess_w": row.runner_up_excess_w,
+            })),
+            "candidates": self.candidates.iter().map(candidate).collect::<Vec<_>>(),
+            "optimum": self.best.as_ref().map(|(o, _)| operation(o)),
+            "heat": self.best.as_ref().map(|(_, f)| flows(f)),
+        })
+    }
+
     /// The heat flows of the optimum as a diagram; `None` where there is no optimum.
     ///
     /// # Errors
@@ -105,4 +142,17 @@ impl Shown {
         };
         Ok(Some(heat_flow_svg(&content)?))
     }
+}
+
+fn operation(o: &Operation) -> Value {
+    let t = &o.temperatures;
+    json!({
+        "hvac_power_w": o.hvac_power_w(), "air_unit_power_w": o.air_unit_power_w,
+        "radiant_heater_power_w": o.radiant_heater_power_w, "air_curtain_power_w": o.air_curtain_power_w,
+        "air_unit_heat_w": o.air_unit_heat_w, "operating_mode": o.mode.number(), "pmv": o.pmv,
+        "cabin_temperature_c": celsius(t.cabin_k), "interior_temperature_c": celsius(t.interior_k),
+        "shell_inside_temperature_c": celsius(t.shell_inside_k), "shell_outside_temperature_c": celsius(t.shell_outside_k),
+        "radiant_heater_temperature_c": celsius(t.radiant_heater_k),
+        "mean_radiant_temperature_c": celsius(o.mean_radiant_temperature_k),
+    })
 }

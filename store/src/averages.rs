@@ -83,6 +83,35 @@ SELECT
 FROM annual AS a
 LEFT JOIN annual AS r ON r.design = 'ptc' AND r.pmv_min = a.pmv_min AND r.pmv_max = a.pmv_max";
 
+/// What the run came to, for whoever asks later when a number moved.
+const HISTORY: &str = "INSERT OR REPLACE INTO annual_history
+SELECT run_id, design, pmv_limit, pmv_min, pmv_max, hvac_power_w, sample_count, unsolved_count
+FROM annual_average WHERE run_id IN (SELECT run_id FROM run)";
+
+/// In which share of the solved year a limit of comfort binds, and the air unit cools.
+const LIMIT_SHARE: &str = "INSERT INTO limit_share
+SELECT
+    m.design,
+    m.pmv_limit,
+    m.pmv_min,
+    m.pmv_max,
+    sum(m.sample_count - m.unsolved_count),
+    sum(m.lower_count),
+    sum(m.upper_count),
+    sum(m.heating_count),
+    sum(m.cooling_count),
+    sum(m.lower_count * n.sample_weight ORDER BY m.month)
+        / sum((m.sample_count - m.unsolved_count) * n.sample_weight ORDER BY m.month),
+    sum(m.cooling_count * n.sample_weight ORDER BY m.month)
+        / sum((m.sample_count - m.unsolved_count) * n.sample_weight ORDER BY m.month),
+    sum(m.outside_range_count),
+    max(a.run_id)
+FROM monthly_average AS m
+JOIN month_weight AS n USING (month)
+JOIN annual_average AS a USING (design, pmv_min, pmv_max)
+GROUP BY m.design, m.pmv_min, m.pmv_max
+HAVING sum(m.sample_count - m.unsolved_count) > 0";
+
 /// What a bus comes to in a year, at the hours that the missions show.
 const ANNUAL_ENERGY: &str = "INSERT INTO annual_energy
 WITH operation AS (
@@ -366,6 +395,9 @@ impl Store {
             MONTHLY,
             "DELETE FROM annual_average",
             ANNUAL,
+            HISTORY,
+            "DELETE FROM limit_share",
+            LIMIT_SHARE,
             "DELETE FROM annual_energy",
             ANNUAL_ENERGY,
             "DELETE FROM unmet_demand",

@@ -38,11 +38,12 @@ const SIMULATED: Table = ("simulated_mission", &["source_file_id", "design_id", 
 const CONTROLLED: Table = ("controlled_mission", &["source_file_id", "design_id", "window_id", "controller"]);
 const OPTIMA: Table = ("optimum_point", &["sample_id", "design_id", "window_id"]);
 /// Tables of averages, with their keys.
-const AVERAGES: [(&str, &str); 22] = [
+const AVERAGES: [(&str, &str); 23] = [
     ("simulation_month", "design_id, window_id, controller, month"),
     ("simulation_class_month", "design_id, window_id, class_order, month"),
     ("monthly_average", "design, pmv_min, pmv_max, month"),
     ("annual_average", "design, pmv_min, pmv_max"),
+    ("limit_share", "design, pmv_min, pmv_max"),
     ("heat_transfer", "one"),
     ("power_limit", "design_id"),
     ("class_month", "month"),

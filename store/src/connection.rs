@@ -9,13 +9,16 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use tokio::runtime::Runtime;
 
-use crate::StoreError;
 use crate::checks::Damage;
+use crate::{StoreError, dictionary};
 
 static MIGRATIONS: Migrator = sqlx::migrate!("../migrations");
 
 /// How long a statement waits for another writer to finish its transaction.
 const BUSY_TIMEOUT: Duration = Duration::from_secs(10);
+
+/// How long a writer waits at its start for readers to leave. Those of one process share their lock and may overlap for long.
+const PATIENCE: Duration = Duration::from_secs(60);
 
 /// A connection to an experiment database.
 #[derive(Debug)]
@@ -72,7 +75,7 @@ impl Store {
             .journal_mode(SqliteJournalMode::Wal)
             .synchronous(SqliteSynchronous::Normal)
             .foreign_keys(true)
-            .busy_timeout(BUSY_TIMEOUT)
+            .busy_timeout(PATIENCE)
             // 64 MiB of pages: a study's tables are read back from memory.
             .pragma("cache_size", "-65536")
             // Folds the log into the file every 64 MiB instead of every 4: each time waits for the disk twice.
@@ -83,6 +86,7 @@ impl Store {
             runtime.block_on(MIGRATIONS.run(connection))
         };
         migrated.map_err(|source| StoreError::Schema { path: path.to_owned(), source })?;
+        store.drive(async |c| dictionary::describe(c).await)?;
         Ok(store)
     }
 
@@ -96,6 +100,7 @@ impl Store {
         let Self { runtime, connection, .. } = &mut store;
         let migrated = runtime.block_on(MIGRATIONS.run(connection));
         migrated.map_err(|source| StoreError::Schema { path: path.to_owned(), source })?;
+        store.drive(async |c| dictionary::describe(c).await)?;
         Ok(store)
     }
 

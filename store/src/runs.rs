@@ -43,6 +43,8 @@ pub struct RunRow {
     pub status: String,
     /// Version of the program.
     pub program_version: String,
+    /// BLAKE3 of the study with all defaults.
+    pub study_hash: String,
     /// Points.
     pub counts: Option<Counts>,
     /// Why it failed.
@@ -122,7 +124,7 @@ impl Store {
     /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn last_run(&mut self) -> Result<Option<RunRow>, StoreError> {
         self.drive(async |c| {
-            let sql = "SELECT run_id, started_utc, finished_utc, status, program_version, point_count, solved_count,
+            let sql = "SELECT run_id, started_utc, finished_utc, status, program_version, study_hash, point_count, solved_count,
                 failed_count, reason FROM run ORDER BY run_id DESC LIMIT 1";
             let Some(r) = sqlx::query(sql).fetch_optional(c).await? else { return Ok(None) };
             let points: Option<i64> = r.try_get("point_count")?;
@@ -140,6 +142,7 @@ impl Store {
                 finished: optional_time(&r, "finished_utc")?,
                 status: r.try_get("status")?,
                 program_version: r.try_get("program_version")?,
+                study_hash: r.try_get("study_hash")?,
                 counts,
                 reason: r.try_get("reason")?,
             }))

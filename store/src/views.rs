@@ -159,7 +159,7 @@ impl Store {
         })
     }
 
-    /// The view `limit_share`, in the order of the study.
+    /// The table `limit_share`, in the order of the study.
     ///
     /// # Errors
     /// [`StoreError::Refused`], [`StoreError::Damaged`].

@@ -3,6 +3,7 @@
 
 use cabin::Vehicle;
 use ingest::weather::WeatherFormat;
+use schemars::JsonSchema;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{Error as _, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
@@ -14,7 +15,7 @@ use std::path::Path;
 /// The version of the study file's format that this program reads.
 pub const SCHEMA_VERSION: u32 = 1;
 
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StudyFile {
     pub schema_version: u32,
@@ -35,18 +36,21 @@ pub struct StudyFile {
     #[serde(default)]
     pub comfort: Comfort,
     #[serde(default)]
+    #[schemars(schema_with = "crate::schema::numbers_of::<Vehicle>")]
     pub vehicle: Vehicle,
     #[serde(default)]
     pub simulation: Simulation,
     #[serde(default)]
     pub control: Control,
     #[serde(default)]
+    #[schemars(schema_with = "crate::schema::numbers_of::<Dynamics>")]
     pub dynamics: Dynamics,
     #[serde(default = "default_designs", deserialize_with = "in_file_order")]
+    #[schemars(schema_with = "crate::schema::tables_of::<Design>")]
     pub designs: Vec<(String, Design)>,
 }
 
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Location {
     pub latitude_deg: f64,
@@ -57,7 +61,7 @@ pub struct Location {
     pub time_zone: String,
 }
 
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Missions {
     #[serde(default, skip_serializing_if = "Telemetry::is_ztbus")]
@@ -110,7 +114,7 @@ pub struct Missions {
 }
 
 /// How mission files look.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Telemetry {
     #[default]
@@ -126,10 +130,11 @@ impl Telemetry {
     }
 }
 
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Weather {
     #[serde(deserialize_with = "format_name")]
+    #[schemars(schema_with = "crate::schema::weather_format")]
     pub format: String,
     pub path: String,
     pub station: Option<String>,
@@ -159,7 +164,7 @@ pub struct Weather {
 }
 
 /// Which of the study's windows are simulated.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Simulation {
     pub pmv_limits: Vec<f64>,
@@ -173,13 +178,14 @@ impl Default for Simulation {
 }
 
 /// Which controllers drive every mission, and how they are judged.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Control {
     pub pmv_limits: Vec<f64>,
     pub designs: Option<Vec<String>>,
     pub coverage: f64,
     #[serde(deserialize_with = "in_file_order")]
+    #[schemars(schema_with = "crate::schema::tables_of::<String>")]
     pub profiles: Vec<(String, String)>,
 }
 
@@ -195,14 +201,14 @@ impl Default for Control {
     }
 }
 
-#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Split {
     #[default]
     Erbs,
 }
 
-#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum TimeLabel {
     Start,
@@ -210,14 +216,14 @@ pub enum TimeLabel {
     End,
 }
 
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Shadow {
     pub path: String,
 }
 
 /// Addresses that `busclimate fetch` downloads.
-#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Fetch {
     pub missions: Option<String>,
@@ -226,7 +232,7 @@ pub struct Fetch {
     pub weather: Option<Vec<String>>,
 }
 
-#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Comfort {
     pub pmv_limits: Option<Limits>,
@@ -234,14 +240,14 @@ pub struct Comfort {
 }
 
 /// `{ from = 0.0, to = 2.0, step = 0.125 }` or `[0.25, 1.0]`.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum Limits {
     Steps(Steps),
     List(Vec<f64>),
 }
 
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Steps {
     pub from: f64,
@@ -249,7 +255,7 @@ pub struct Steps {
     pub step: f64,
 }
 
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Design {
     pub heating: Heating,
@@ -261,7 +267,7 @@ pub struct Design {
     pub cooling_cop: Option<Cop>,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Heating {
     Ptc,
@@ -269,7 +275,7 @@ pub enum Heating {
 }
 
 /// The name of a curve, or a table of `[lift in K, COP]`.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum Cop {
     Name(String),

@@ -7,6 +7,7 @@ pub mod assumptions;
 mod file;
 pub mod keys;
 mod ready;
+mod schema;
 pub mod settings;
 mod sources;
 pub mod template;
@@ -22,6 +23,7 @@ use std::path::{Path, PathBuf};
 use store::DesignRow;
 
 pub use file::StudyFileError;
+pub use schema::{SCHEMA_FILE, schema};
 pub use sources::Source;
 
 use file::StudyFile;

@@ -3,6 +3,8 @@
 use cabin::Vehicle;
 use simulate::Dynamics;
 
+use crate::schema::SCHEMA_FILE;
+
 /// The parts of a study file that differ between a new study and the demo's.
 pub struct Template<'a> {
     /// Name of the study.
@@ -81,6 +83,7 @@ pub fn render(template: &Template) -> String {
     let dynamics = toml::to_string(&Dynamics::default()).expect("a flat struct of numbers becomes TOML");
     let [format, map] = template.weather.lines();
     include_str!("template.toml")
+        .replace("@SCHEMA@", SCHEMA_FILE)
         .replace("@FORMAT@", format)
         .replace("@MAP@", map)
         .replace("@ZTBUS@", crate::sources::ZTBUS)

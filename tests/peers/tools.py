@@ -26,6 +26,7 @@ TABLES = [
     "annual_average",
     "monthly_average",
     "annual_energy",
+    "limit_share",
     "energy_class",
     "unmet_demand",
     "heat_flow_monthly",
