@@ -127,8 +127,8 @@ pub fn check(study: &Study, check: &Check) -> Result<Ending, Failure> {
     }
     match check.errors.as_slice() {
         [] => Ok(Ending::of(check.refused.is_empty() && check.used.iter().all(|record| record.replaced().is_none()))),
-        [one] => Err(Failure::Inputs(anyhow!("{one}"))),
-        [first, ..] => Err(Failure::Inputs(anyhow!("{} errors, the first: {first}", check.errors.len()))),
+        [_] => Err(Failure::Inputs(anyhow!("a run would end with this error"))),
+        all => Err(Failure::Inputs(anyhow!("a run would end with these {} errors", all.len()))),
     }
 }
 

@@ -259,3 +259,19 @@ fn cli_tables_that_would_fill_the_memory_are_refused_with_the_limit() {
     scratch.write("shadow.csv", &shadow);
     scratch.expect(0, &["run"]);
 }
+
+#[test]
+fn cli_all_missing_inputs_are_said_at_once_and_once() {
+    let scratch = Scratch::empty();
+    scratch.expect(0, &["init", "new"]);
+    for command in ["run", "check"] {
+        let run = scratch.expect(3, &[command, "new"]);
+        let said = format!("{}{}", run.stdout, run.stderr);
+        for input in ["new/ztbus: ", "new/weather: ", "new/shadow.csv: "] {
+            assert_eq!(said.matches(input).count(), 1, "{command}: {input}: {said}");
+        }
+    }
+    scratch.edit("new/study.toml", "[vehicle]", "[vehicle]\nmetabolic_rate_met = -1.0");
+    let run = scratch.expect(2, &["run", "new"]);
+    assert!(run.stderr.contains("[vehicle] metabolic_rate_met = -1: "), "{}", run.stderr);
+}

@@ -154,7 +154,7 @@ impl Default for Vehicle {
 
 /// A constant lies outside the range in which the model has a meaning.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("vehicle.{name} = {value}: {rule}")]
+#[error("{name} = {value}: {rule}")]
 pub struct VehicleError {
     /// Name of the constant.
     pub name: &'static str,

@@ -98,7 +98,9 @@ pub fn datasette(relations: &[Relation], questions: &[Question], database: &str)
         let about = json!({ "title": q.asks, "description": format!("Asked in {}.", q.who), "sql": q.sql.trim() });
         (q.name.clone(), about)
     };
-    let tables: Map<String, Value> = relations.iter().map(table).collect();
+    let mut tables: Map<String, Value> = relations.iter().map(table).collect();
+    // The record of schema versions, which the database's driver keeps.
+    tables.insert("_sqlx_migrations".to_owned(), json!({ "hidden": true }));
     let queries: Map<String, Value> = questions.iter().map(query).collect();
     json!({
         "title": "What thermal comfort in an electric city bus costs over a year",

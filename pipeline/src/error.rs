@@ -44,6 +44,9 @@ pub enum PipelineError {
         /// What is wrong with it.
         source: OwnError,
     },
+    /// More than one input cannot be used.
+    #[error("{} inputs cannot be used: {}", .0.len(), .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))]
+    Several(Vec<PipelineError>),
     /// No segment gives a sample.
     #[error("no samples: {excluded} segments are excluded, the first one: {reason}")]
     NoSamples {

@@ -177,9 +177,9 @@ impl Running<'_> {
         let (study, inputs) = (self.study, &self.inputs);
         match stage {
             Stage::Ingest => {
-                let work = ingest::ingest(study, inputs, store, progress)?;
+                let work = ingest::ingest(study, inputs, store, progress).map_err(|e| self.with_other_inputs(e))?;
                 // Weather that cannot be used is said before anything is computed.
-                inputs.keys(store)?;
+                inputs.keys(store).map_err(|e| self.with_other_inputs(e))?;
                 if !self.stages.contains(&Stage::Shade) {
                     ingest::say_stale(inputs, store, progress)?;
                 }
@@ -203,6 +203,24 @@ impl Running<'_> {
                 Ok(reported.work)
             }
         }
+    }
+}
+
+impl Running<'_> {
+    /// An input that cannot be used, with the others of which the same is true: whoever mends them wants to know all at once.
+    fn with_other_inputs(&self, error: PipelineError) -> PipelineError {
+        let of_input =
+            matches!(error, PipelineError::Ingest(_) | PipelineError::InputFile { .. } | PipelineError::Shadow { .. });
+        if !of_input || !self.stages.contains(&Stage::Shade) {
+            return error;
+        }
+        let mut all = vec![error];
+        for other in [self.inputs.weather().err(), self.inputs.shadow().err()].into_iter().flatten() {
+            if all.iter().all(|said| said.to_string() != other.to_string()) {
+                all.push(other);
+            }
+        }
+        if all.len() == 1 { all.remove(0) } else { PipelineError::Several(all) }
     }
 }
 

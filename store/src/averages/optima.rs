@@ -1,0 +1,150 @@
+//! What the optima come to in each month and in the year.
+
+/// The months whose samples, designs or windows have changed.
+pub const MONTHLY: &str = "INSERT INTO monthly_average
+SELECT
+    d.name,
+    w.pmv_limit,
+    w.pmv_min,
+    w.pmv_max,
+    s.month,
+    avg(p.air_unit_power_w + p.radiant_heater_power_w + p.air_curtain_power_w),
+    -- Heaters and curtain count to the side on which the air unit works; alone they heat.
+    avg(CASE WHEN p.operating_mode >= 0
+        THEN p.air_unit_power_w + p.radiant_heater_power_w + p.air_curtain_power_w
+        WHEN p.operating_mode < 0 THEN 0.0 END),
+    avg(CASE WHEN p.operating_mode < 0
+        THEN p.air_unit_power_w + p.radiant_heater_power_w + p.air_curtain_power_w
+        WHEN p.operating_mode >= 0 THEN 0.0 END),
+    count(*),
+    sum(p.status <> 0),
+    -- A binding limit is met to rounding; the next state inside is many orders of magnitude away.
+    sum(p.status = 0 AND p.pmv < w.pmv_min + 1e-6),
+    sum(p.status = 0 AND p.pmv > w.pmv_max - 1e-6),
+    sum(p.status = 0 AND p.operating_mode = 1),
+    sum(p.status = 0 AND p.operating_mode = -1),
+    sum(p.status = 0 AND p.outside_standard_range),
+    coalesce((SELECT max(run_id) FROM run), 0)
+FROM hourly_sample AS s
+-- Samples in the order of their ids, whatever the planner knows of the tables: sums depend on it in their last digits.
+CROSS JOIN optimum_point AS p USING (sample_id)
+CROSS JOIN hvac_design AS d USING (design_id)
+CROSS JOIN comfort_window AS w USING (window_id)
+WHERE s.month IN (SELECT month FROM stale_month)
+GROUP BY p.design_id, p.window_id, s.month";
+
+/// From all months; a sample weighs 1/N · days/365 (paper, eq. meanPower), renormalised over the months present.
+pub const ANNUAL: &str = "INSERT INTO annual_average
+WITH month_days (month, days) AS (
+    VALUES (1, 31), (2, 28), (3, 31), (4, 30), (5, 31), (6, 30), (7, 31), (8, 31), (9, 30), (10, 31), (11, 30), (12, 31)
+),
+present AS (
+    SELECT month, days, CAST(days AS REAL) / sum(days) OVER () / sample_count AS sample_weight
+    FROM (SELECT month, max(sample_count) AS sample_count FROM monthly_average GROUP BY month) JOIN month_days USING (month)
+),
+annual AS (
+    SELECT
+        m.design,
+        m.pmv_limit,
+        m.pmv_min,
+        m.pmv_max,
+        sum(m.hvac_power_w * w.days) / sum(CASE WHEN m.hvac_power_w IS NOT NULL THEN w.days END) AS hvac_power_w,
+        sum(m.heating_power_w * w.days) / sum(CASE WHEN m.hvac_power_w IS NOT NULL THEN w.days END) AS heating_power_w,
+        sum(m.cooling_power_w * w.days) / sum(CASE WHEN m.hvac_power_w IS NOT NULL THEN w.days END) AS cooling_power_w,
+        sum(m.sample_count) AS sample_count,
+        sum(m.unsolved_count) AS unsolved_count,
+        sum(m.unsolved_count * w.sample_weight) AS unsolved_weight
+    FROM monthly_average AS m
+    JOIN present AS w USING (month)
+    GROUP BY m.design, m.pmv_min, m.pmv_max
+)
+SELECT
+    a.design,
+    a.pmv_limit,
+    a.pmv_min,
+    a.pmv_max,
+    a.hvac_power_w,
+    a.heating_power_w,
+    a.cooling_power_w,
+    a.sample_count,
+    a.unsolved_count,
+    a.unsolved_weight,
+    (r.hvac_power_w - a.hvac_power_w) / nullif(r.hvac_power_w, 0.0),
+    coalesce((SELECT max(run_id) FROM run), 0)
+FROM annual AS a
+LEFT JOIN annual AS r ON r.design = 'ptc' AND r.pmv_min = a.pmv_min AND r.pmv_max = a.pmv_max";
+
+/// What the run came to, for whoever asks later when a number moved.
+pub const HISTORY: &str = "INSERT OR REPLACE INTO annual_history
+SELECT run_id, design, pmv_limit, pmv_min, pmv_max, hvac_power_w, sample_count, unsolved_count
+FROM annual_average WHERE run_id IN (SELECT run_id FROM run)";
+
+/// In which share of the solved year a limit of comfort binds, and the air unit cools.
+pub const LIMIT_SHARE: &str = "INSERT INTO limit_share
+SELECT
+    m.design,
+    m.pmv_limit,
+    m.pmv_min,
+    m.pmv_max,
+    sum(m.sample_count - m.unsolved_count),
+    sum(m.lower_count),
+    sum(m.upper_count),
+    sum(m.heating_count),
+    sum(m.cooling_count),
+    sum(m.lower_count * n.sample_weight ORDER BY m.month)
+        / sum((m.sample_count - m.unsolved_count) * n.sample_weight ORDER BY m.month),
+    sum(m.cooling_count * n.sample_weight ORDER BY m.month)
+        / sum((m.sample_count - m.unsolved_count) * n.sample_weight ORDER BY m.month),
+    sum(m.outside_range_count),
+    max(a.run_id)
+FROM monthly_average AS m
+JOIN month_weight AS n USING (month)
+JOIN annual_average AS a USING (design, pmv_min, pmv_max)
+GROUP BY m.design, m.pmv_min, m.pmv_max
+HAVING sum(m.sample_count - m.unsolved_count) > 0";
+
+/// What a bus comes to in a year, at the hours that the missions show.
+pub const ANNUAL_ENERGY: &str = "INSERT INTO annual_energy
+WITH operation AS (
+    SELECT
+        sum(duration_s) / 3600.0 AS hours,
+        count(DISTINCT bus || ' ' || substr(start_utc, 1, 7)) / 12.0 AS bus_years
+    FROM mission_segment
+)
+SELECT
+    c.design,
+    c.pmv_limit,
+    c.pmv_min,
+    c.pmv_max,
+    a.hvac_power_w / 1000.0,
+    c.kwh_per_km,
+    o.hours / o.bus_years,
+    a.hvac_power_w / 1000.0 * o.hours / o.bus_years,
+    c.vehicle_power_share,
+    c.run_id
+FROM energy_class AS c
+JOIN annual_average AS a USING (design, pmv_min, pmv_max)
+CROSS JOIN operation AS o
+WHERE c.sorted_by = 'year'";
+
+/// Months by their days, within a month all samples alike.
+pub const UNMET_DEMAND: &str = "INSERT INTO unmet_demand
+SELECT
+    f.design,
+    f.pmv_limit,
+    f.pmv_min,
+    f.pmv_max,
+    l.heating_limit_w,
+    l.cooling_limit_w,
+    sum(f.over_limit_count),
+    sum(f.over_limit_count * n.sample_weight ORDER BY f.month),
+    sum(f.unmet_heat_w * f.sample_count * n.sample_weight ORDER BY f.month)
+        / sum(f.sample_count * n.sample_weight ORDER BY f.month),
+    a.unsolved_weight,
+    a.run_id
+FROM heat_flow_monthly AS f
+JOIN month_weight AS n ON n.month = f.month
+JOIN hvac_design AS d ON d.name = f.design
+JOIN power_limit AS l USING (design_id)
+JOIN annual_average AS a ON a.design = f.design AND a.pmv_min = f.pmv_min AND a.pmv_max = f.pmv_max
+GROUP BY f.design, f.pmv_min, f.pmv_max";
