@@ -143,3 +143,19 @@ fn prop_unmet_demand_follows_the_limits_of_the_vehicle() {
     assert!(run.stderr.contains(" 0 points computed now"), "{}", run.stderr);
     alike(&scratch, 3, stored, &counted("5000.0"));
 }
+
+#[test]
+fn prop_another_clock_asks_for_other_classes_and_for_no_optimum() {
+    let scratch = Scratch::small(12, "[1.0]", "[]");
+    scratch.expect(0, &["run"]);
+    let classes = "SELECT sorted_by, class, weight, hvac_power_w FROM energy_class ORDER BY design, sorted_by, class_order, class";
+    let before = scratch.query(classes);
+    // An hour behind: months stay as they are, hours do not.
+    scratch.edit("study.toml", "time_zone = \"Europe/Zurich\"", "time_zone = \"Europe/London\"");
+    let run = scratch.expect(0, &["run"]);
+    assert!(run.stderr.contains(" 0 points computed now"), "{}", run.stderr);
+    let after = scratch.query(classes);
+    scratch.expect(0, &["run", "--db", "fresh.db"]);
+    assert!(after == scratch.query_of("fresh.db", classes), "classes of the old clock");
+    assert!(after != before, "the clock changed nothing");
+}

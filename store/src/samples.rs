@@ -66,9 +66,14 @@ impl Store {
                 let file = *files.get(&sample.segment.source_path).ok_or_else(unknown)?;
                 match stored.remove(&sample.id) {
                     Some(s) if s == *sample => {}
-                    // The same values, made from something that differs elsewhere, or without a clock yet.
+                    // The same values, made from something that differs elsewhere, or by another clock.
                     Some(s) if (Sample { key: sample.key.clone(), clock: sample.clock, ..s.clone() }) == *sample => {
-                        put_clock(&mut tx, sample).await?;
+                        if s.clock != sample.clock {
+                            put_clock(&mut tx, sample).await?;
+                            // Its optima stay, what they come to by the hour does not.
+                            let sql = "INSERT OR IGNORE INTO stale_month VALUES (?)";
+                            sqlx::query(sql).bind(sample.month).execute(&mut *tx).await?;
+                        }
                         let sql = "UPDATE hourly_sample SET sample_key = ? WHERE sample_id = ?";
                         sqlx::query(sql).bind(&sample.key).bind(sample.id).execute(&mut *tx).await?;
                     }
