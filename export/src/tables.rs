@@ -101,7 +101,7 @@ impl Sink {
     ) -> PolarsResult<Self> {
         let mut about = vec![("ARROW:schema".to_owned(), arrow_schema(schema, relation, kept))];
         about.push(("busclimate:table".to_owned(), relation.name.clone()));
-        about.push(("busclimate:description".to_owned(), format!("{}. {}", relation.title, relation.text)));
+        about.push(("busclimate:description".to_owned(), relation.about()));
         let fields: Vec<_> = relation.columns.iter().zip(kept).filter(|k| *k.1).map(|(c, _)| words::field(c)).collect();
         about.push(("busclimate:columns".to_owned(), serde_json::json!(fields).to_string()));
         about.extend(provenance.pairs().map(|(key, value)| (format!("busclimate:{key}"), value)));

@@ -14,9 +14,8 @@ pub fn markdown(relations: &[Relation]) -> String {
     for relation in relations.iter().filter(|r| !r.internal) {
         let kind = if relation.is_view { "view" } else { "table" };
         let _ = writeln!(text, "## {} ({kind})\n", relation.name);
-        let sentence = if relation.text.ends_with('.') { "" } else { "." };
         let source = if relation.source.is_empty() { String::new() } else { format!(" Source: {}.", relation.source) };
-        let _ = writeln!(text, "{}", wrapped(&format!("{}. {}{sentence}{source}", relation.title, relation.text)));
+        let _ = writeln!(text, "{}", wrapped(&format!("{}{source}", relation.about())));
         let _ = writeln!(text, "\n| column | type | unit | what it is |\n|---|---|---|---|");
         for c in &relation.columns {
             let source = if c.source.is_empty() { String::new() } else { format!(" ({})", c.source) };
@@ -82,13 +81,9 @@ pub(crate) fn field(c: &Column) -> Value {
 #[must_use]
 pub fn datasette(relations: &[Relation], questions: &[Question], database: &str) -> Value {
     let table = |r: &Relation| {
-        let column = |c: &Column| {
-            let unit = if c.unit.is_empty() { String::new() } else { format!(" [{}]", c.unit) };
-            (c.name.clone(), Value::from(format!("{}{unit}", c.text)))
-        };
+        let column = |c: &Column| (c.name.clone(), Value::from(format!("{}{}", c.text, c.bracketed_unit())));
         let columns: Map<String, Value> = r.columns.iter().map(column).collect();
-        let text = format!("{}. {}", r.title, r.text);
-        let mut about = json!({ "description": text.trim_end(), "columns": columns });
+        let mut about = json!({ "description": r.about(), "columns": columns });
         if r.internal {
             about["hidden"] = Value::from(true);
         }

@@ -8,6 +8,7 @@ use sqlx::sqlite::{SqliteConnection, SqliteRow};
 use sqlx::{AssertSqlSafe, Column, Row, Sqlite, Transaction, TypeInfo, ValueRef};
 use std::collections::BTreeMap;
 
+use crate::dictionary::without_words;
 use crate::{Store, StoreError};
 
 /// A table and the columns of its key.
@@ -228,7 +229,8 @@ impl Store {
         let schema = async |c: &mut SqliteConnection| {
             let sql = "SELECT type || ' ' || name AS object, coalesce(sql, '') AS text FROM sqlite_schema";
             let rows = select(c, sql.to_owned()).await?;
-            let pair = |r: &SqliteRow| Ok((r.try_get("object")?, r.try_get("text")?));
+            // Words may be those of another version of the program.
+            let pair = |r: &SqliteRow| Ok((r.try_get("object")?, without_words(r.try_get("text")?)));
             rows.iter().map(pair).collect::<Result<BTreeMap<String, String>, StoreError>>()
         };
         let mut new = Self::in_memory()?;

@@ -8,6 +8,7 @@ use sqlx::sqlite::SqliteConnection;
 use sqlx::{AssertSqlSafe, Row};
 use std::collections::BTreeMap;
 
+use crate::row::begin;
 use crate::{Store, StoreError};
 
 const TEXT: &str = include_str!("../dictionary.toml");
@@ -33,6 +34,14 @@ pub struct Relation {
     pub columns: Vec<Column>,
 }
 
+impl Relation {
+    /// Title and text as one line.
+    #[must_use]
+    pub fn about(&self) -> String {
+        format!("{}. {}", self.title, self.text).trim_end().to_owned()
+    }
+}
+
 /// A column.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Column {
@@ -46,6 +55,14 @@ pub struct Column {
     pub unit: String,
     /// Where its definition comes from; empty where that is this project.
     pub source: String,
+}
+
+impl Column {
+    /// The unit as it stands beside a name or a text: ` [W]`, or nothing.
+    #[must_use]
+    pub fn bracketed_unit(&self) -> String {
+        if self.unit.is_empty() { String::new() } else { format!(" [{}]", self.unit) }
+    }
 }
 
 /// What the values of a column are.
@@ -133,34 +150,38 @@ pub fn dictionary() -> Result<Vec<Relation>, StoreError> {
 
 async fn relations(c: &mut SqliteConnection) -> Result<Vec<Relation>, StoreError> {
     let text: Dictionary = toml::from_str(TEXT).map_err(|e| sqlx::Error::Decode(e.into()))?;
+    let sql = "SELECT s.name AS relation, s.type AS kind, c.name AS column_name, c.type AS declared
+        FROM sqlite_schema AS s, pragma_table_info(s.name) AS c WHERE s.type IN ('table', 'view') ORDER BY s.name, c.cid";
+    let mut schema: BTreeMap<String, (bool, Vec<(String, ColumnKind)>)> = BTreeMap::new();
+    for r in sqlx::query(sql).fetch_all(c).await? {
+        let (is_view, columns) = schema.entry(r.try_get("relation")?).or_default();
+        *is_view = r.try_get::<String, _>("kind")? == "view";
+        columns.push((r.try_get("column_name")?, ColumnKind::of(r.try_get("declared")?)));
+    }
     let mut relations = Vec::new();
-    for (name, entry) in &text.object {
-        let entry: Entry = entry.clone().try_into().map_err(|e| sqlx::Error::Decode(Box::from(e)))?;
-        let sql = "SELECT s.type AS object, c.name AS column_name, c.type AS declared
-            FROM sqlite_schema AS s, pragma_table_info(s.name) AS c WHERE s.name = ? ORDER BY c.cid";
-        let rows = sqlx::query(sql).bind(name).fetch_all(&mut *c).await?;
-        let mut columns = Vec::new();
-        for r in &rows {
-            let column: String = r.try_get("column_name")?;
-            let said = entry.columns.get(&column).or_else(|| text.columns.get(&column));
+    for (name, entry) in text.object {
+        let entry: Entry = entry.try_into().map_err(|e| sqlx::Error::Decode(Box::from(e)))?;
+        let (is_view, columns) = schema.remove(&name).unwrap_or_default();
+        let column = |(name, kind): (String, ColumnKind)| {
+            let said = entry.columns.get(&name).or_else(|| text.columns.get(&name));
             let word = |n: usize| said.and_then(|said| said.get(n)).cloned();
-            let by_suffix = || UNITS.iter().find(|(suffix, _)| column.ends_with(suffix)).map_or("", |u| u.1).to_owned();
-            columns.push(Column {
-                kind: ColumnKind::of(r.try_get("declared")?),
+            let by_suffix = || UNITS.iter().find(|(suffix, _)| name.ends_with(suffix)).map_or("", |u| u.1).to_owned();
+            Column {
+                kind,
                 text: word(0).unwrap_or_default(),
                 unit: word(1).unwrap_or_else(by_suffix),
                 source: word(2).unwrap_or_default(),
-                name: column,
-            });
-        }
+                name,
+            }
+        };
         relations.push(Relation {
-            name: name.clone(),
-            is_view: rows.first().map(|r| r.try_get::<String, _>("object")).transpose()?.as_deref() == Some("view"),
+            columns: columns.into_iter().map(column).collect(),
+            name,
+            is_view,
             internal: entry.internal,
             title: entry.title,
             text: entry.text,
             source: entry.source,
-            columns,
         });
     }
     Ok(relations)
@@ -170,55 +191,50 @@ async fn relations(c: &mut SqliteConnection) -> Result<Vec<Relation>, StoreError
 /// change nothing of what is stored, which is why the statements may be rewritten in their place
 /// (<https://www.sqlite.org/lang_altertable.html>, section 7).
 pub(crate) async fn describe(c: &mut SqliteConnection) -> Result<(), StoreError> {
+    let relations = relations(c).await?;
     let mut renewed = Vec::new();
-    for relation in relations(c).await?.iter().filter(|r| !r.internal) {
-        let sql = "SELECT sql FROM sqlite_schema WHERE name = ? AND type IN ('table', 'view')";
-        let Some(row) = sqlx::query(sql).bind(&relation.name).fetch_optional(&mut *c).await? else { continue };
-        let stored: String = row.try_get("sql")?;
-        let described = described(&stored, relation);
-        if described != stored {
-            renewed.push((relation.name.clone(), described));
+    for r in
+        sqlx::query("SELECT name, sql FROM sqlite_schema WHERE type IN ('table', 'view')").fetch_all(&mut *c).await?
+    {
+        let (name, stored): (String, String) = (r.try_get("name")?, r.try_get("sql")?);
+        if let Some(relation) = relations.iter().find(|r| !r.internal && r.name == name) {
+            let described = described(&stored, relation);
+            if described != stored {
+                renewed.push((name, described));
+            }
         }
     }
     if renewed.is_empty() {
         return Ok(());
     }
-    for sql in ["BEGIN IMMEDIATE", "PRAGMA writable_schema = ON"] {
-        sqlx::query(sql).execute(&mut *c).await?;
-    }
+    let mut tx = begin(c).await?;
+    sqlx::query("PRAGMA writable_schema = ON").execute(&mut *tx).await?;
     for (name, sql) in &renewed {
         let update = "UPDATE sqlite_schema SET sql = ? WHERE name = ? AND type IN ('table', 'view')";
-        sqlx::query(update).bind(sql).bind(name).execute(&mut *c).await?;
+        sqlx::query(update).bind(sql).bind(name).execute(&mut *tx).await?;
     }
     // Whoever has the database open reads the statements again.
-    let version: i64 = sqlx::query("PRAGMA schema_version").fetch_one(&mut *c).await?.try_get(0)?;
+    let version: i64 = sqlx::query("PRAGMA schema_version").fetch_one(&mut *tx).await?.try_get(0)?;
     // The text is built from a number.
-    sqlx::query(AssertSqlSafe(format!("PRAGMA schema_version = {}", version + 1))).execute(&mut *c).await?;
-    for sql in ["PRAGMA writable_schema = RESET", "COMMIT"] {
-        sqlx::query(sql).execute(&mut *c).await?;
-    }
-    Ok(())
+    sqlx::query(AssertSqlSafe(format!("PRAGMA schema_version = {}", version + 1))).execute(&mut *tx).await?;
+    sqlx::query("PRAGMA writable_schema = RESET").execute(&mut *tx).await?;
+    Ok(tx.commit().await?)
+}
+
+/// A statement as it is without the words of any version.
+pub(crate) fn without_words(statement: &str) -> String {
+    statement.lines().filter(|line| !line.starts_with(MARK)).collect::<Vec<_>>().join("\n")
 }
 
 /// A statement with the words after its first line, in place of those that stand there.
 fn described(statement: &str, relation: &Relation) -> String {
-    let mut lines = statement.lines().filter(|line| !line.starts_with(MARK));
-    let mut text = lines.next().unwrap_or_default().to_owned();
-    let mut say = |line: &str| {
-        text.push('\n');
-        text.push_str(MARK);
-        text.push_str(line.trim_end());
-    };
-    say(&format!("{}. {}", relation.title, relation.text));
+    let bare = without_words(statement);
+    let (first, rest) = bare.split_once('\n').unwrap_or((&bare, ""));
+    let mut text = format!("{first}\n{MARK}{}\n", relation.about());
     for column in &relation.columns {
-        let unit = if column.unit.is_empty() { String::new() } else { format!(" [{}]", column.unit) };
-        say(&format!("{}{unit}: {}", column.name, column.text));
+        text += &format!("{MARK}{}{}: {}\n", column.name, column.bracketed_unit(), column.text);
     }
-    for line in lines {
-        text.push('\n');
-        text.push_str(line);
-    }
-    text
+    text + rest
 }
 
 #[cfg(test)]
@@ -275,5 +291,31 @@ mod tests {
             store.check_averages().unwrap();
             store.close().unwrap();
         }
+    }
+    #[test]
+    fn prop_words_of_another_version_are_no_damage_and_are_renewed() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("study.db");
+        Store::open(&path).unwrap().close().unwrap();
+        let other = async |c: &mut sqlx::sqlite::SqliteConnection| {
+            let sql = "PRAGMA writable_schema = ON;
+                UPDATE sqlite_schema SET sql = replace(sql, '-- | weight: share', '-- | weight: part') WHERE name = 'sample';
+                PRAGMA writable_schema = RESET";
+            sqlx::raw_sql(sql).execute(c).await?;
+            Ok(())
+        };
+        let mut store = Store::open(&path).unwrap();
+        store.drive(other).unwrap();
+        store.close().unwrap();
+        let words = |store: &mut Store| {
+            store.query_text("SELECT sql FROM sqlite_schema WHERE name = 'sample'").unwrap().concat()
+        };
+        let mut reader = Store::open_read_only(&path).unwrap();
+        assert!(words(&mut reader)[0].contains("-- | weight: part in the year"));
+        reader.check_averages().unwrap();
+        reader.close().unwrap();
+        let mut store = Store::open(&path).unwrap();
+        assert!(words(&mut store)[0].contains("-- | weight: share in the year"));
+        store.close().unwrap();
     }
 }
