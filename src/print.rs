@@ -394,7 +394,7 @@ fn flows(shown: &Shown) -> Result<(), Failure> {
         celsius(operation.mean_radiant_temperature_k)
     ))?;
     say(format_args!("heat flows in W:"))?;
-    for (name, watt) in flows.named_w() {
+    for (_, name, watt) in flows.named_w() {
         say(format_args!("  {name:<36} {watt:>10.1}"))?;
     }
     let residual = flows.net_w().into_iter().map(f64::abs).fold(0.0, f64::max);

@@ -103,7 +103,7 @@ fn prop_heat_flows_are_those_of_the_model() {
         let sql = format!(
             "SELECT {columns} FROM heat_flow WHERE sample_id = {sample} AND design = '{design}' AND pmv_limit = 1.0"
         );
-        for ((name, flow_w), stored) in flows.named_w().iter().zip(&scratch.query(&sql)[0]) {
+        for ((name, _, flow_w), stored) in flows.named_w().iter().zip(&scratch.query(&sql)[0]) {
             assert!(close(*flow_w, number(stored), 1e-6), "{sample} {design} {name}: {flow_w} and {stored}");
         }
     }

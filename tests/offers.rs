@@ -72,7 +72,10 @@ fn cli_an_optimum_is_shown_as_json_too() {
     let stored: f64 = scratch.query(&power)[0][0].parse().unwrap();
     assert!((shown["optimum"]["hvac_power_w"].as_f64().unwrap() - stored).abs() < 1e-6, "{shown:#}");
     assert_eq!(shown["candidates"].as_array().unwrap().len(), 4);
-    assert_eq!(shown["heat"]["flows_w"].as_object().unwrap().len(), 17);
+    let flows = shown["heat"]["flows_w"].as_object().unwrap();
+    let door = format!("SELECT door_w FROM heat_flow WHERE sample_id = {id} AND design = 'hp'");
+    let stored: f64 = scratch.query(&door)[0][0].parse().unwrap();
+    assert!(flows.len() == 17 && (flows["door_w"].as_f64().unwrap() - stored).abs() < 1e-6, "{flows:?}");
 }
 
 #[test]

@@ -144,27 +144,27 @@ impl HeatFlows {
         }
     }
 
-    /// Every flow with its name, in the order of the fields.
+    /// Every flow with the name of its column in the database and its name in words, in the order of the fields.
     #[must_use]
-    pub fn named_w(&self) -> [(&'static str, f64); 17] {
+    pub fn named_w(&self) -> [(&'static str, &'static str, f64); 17] {
         [
-            ("cabin air to shell", self.convection_shell_inside_w),
-            ("interior to cabin air", self.convection_interior_w),
-            ("shell to ambient air", self.convection_shell_outside_w),
-            ("radiant heaters to cabin air", self.convection_radiant_heater_w),
-            ("through the shell", self.conduction_shell_w),
-            ("shell to surroundings (radiation)", self.radiation_shell_outside_w),
-            ("radiant heaters to shell", self.radiation_heater_shell_w),
-            ("radiant heaters to interior", self.radiation_heater_interior_w),
-            ("interior to shell (radiation)", self.radiation_interior_shell_w),
-            ("through open doors", self.door_w),
-            ("passengers", self.passengers_w),
-            ("electric components", self.other_w),
-            ("air unit", self.air_unit_w),
-            ("radiant heater power", self.radiant_heater_power_w),
-            ("sun on interior", self.solar.interior_w),
-            ("sun on shell inside", self.solar.shell_inside_w),
-            ("sun on shell outside", self.solar.shell_outside_w),
+            ("cabin_to_shell_w", "cabin air to shell", self.convection_shell_inside_w),
+            ("interior_to_cabin_w", "interior to cabin air", self.convection_interior_w),
+            ("shell_to_ambient_w", "shell to ambient air", self.convection_shell_outside_w),
+            ("heater_to_cabin_w", "radiant heaters to cabin air", self.convection_radiant_heater_w),
+            ("through_shell_w", "through the shell", self.conduction_shell_w),
+            ("shell_radiation_w", "shell to surroundings (radiation)", self.radiation_shell_outside_w),
+            ("heater_to_shell_w", "radiant heaters to shell", self.radiation_heater_shell_w),
+            ("heater_to_interior_w", "radiant heaters to interior", self.radiation_heater_interior_w),
+            ("interior_to_shell_w", "interior to shell (radiation)", self.radiation_interior_shell_w),
+            ("door_w", "through open doors", self.door_w),
+            ("passengers_w", "passengers", self.passengers_w),
+            ("other_w", "electric components", self.other_w),
+            ("air_unit_heat_w", "air unit", self.air_unit_w),
+            ("radiant_heater_power_w", "radiant heater power", self.radiant_heater_power_w),
+            ("solar_interior_w", "sun on interior", self.solar.interior_w),
+            ("solar_shell_inside_w", "sun on shell inside", self.solar.shell_inside_w),
+            ("solar_shell_outside_w", "sun on shell outside", self.solar.shell_outside_w),
         ]
     }
 }

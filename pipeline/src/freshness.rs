@@ -74,7 +74,7 @@ pub(crate) fn optima(study: &Study, store: &mut Store) -> Result<Option<Stale>, 
 pub(crate) fn solve_key(study: &Study, store: &mut Store) -> Result<String, PipelineError> {
     let mut parts: Vec<String> = study.design_rows.iter().map(|d| format!("{} {}", d.name, d.design_key)).collect();
     parts.extend(study.grid.windows().iter().map(|w| format!("{} {}", w.pmv_min(), w.pmv_max())));
-    parts.push(format!("{:?}", energy::bus(study).limits_w));
+    parts.push(format!("{:?}", energy::power_limits_w(study)));
     parts.extend(store.sample_keys()?.into_iter().map(|(id, key)| format!("{id} {key}")));
     Ok(keys::hash(&parts.iter().map(String::as_str).collect::<Vec<_>>()))
 }

@@ -204,9 +204,7 @@ impl Running<'_> {
             }
         }
     }
-}
 
-impl Running<'_> {
     /// An input that cannot be used, with the others of which the same is true: whoever mends them wants to know all at once.
     fn with_other_inputs(&self, error: PipelineError) -> PipelineError {
         let of_input =

@@ -94,7 +94,7 @@ impl Shown {
         };
         let flows = |flows: &HeatFlows| {
             let named: Map<String, Value> =
-                flows.named_w().map(|(name, w)| (name.to_owned(), json!(w))).into_iter().collect();
+                flows.named_w().map(|(column, _, w)| (column.to_owned(), json!(w))).into_iter().collect();
             json!({ "flows_w": named, "net_w": flows.net_w() })
         };
         json!({

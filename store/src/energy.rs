@@ -1,26 +1,11 @@
-//! Where a year's energy goes: the bus as the optima know it, sums of a month by class, and what a year comes to of them.
+//! Where a year's energy goes: sums of a month by class, its heat flows, and what a year comes to of them.
 
-use cabin::{HeatFlows, HeatTransfer};
+use cabin::HeatFlows;
 use sqlx::Row;
 use sqlx::sqlite::SqliteConnection;
-use std::collections::BTreeSet;
 
-use crate::checks::{commit, seal_averages};
-use crate::row::{Insert, begin};
+use crate::row::Insert;
 use crate::{Store, StoreError, StoredGrid};
-
-/// What the optima are found with, besides the designs.
-#[derive(Debug, Clone, PartialEq)]
-pub struct BusRow {
-    /// Coefficients.
-    pub transfer: HeatTransfer,
-    /// Heat of a passenger in W.
-    pub passenger_heat_w: f64,
-    /// Heat of electric components in W.
-    pub other_heat_w: f64,
-    /// Electric power of the air unit in W that the vehicle can give in heating and in cooling, by design.
-    pub limits_w: Vec<[f64; 2]>,
-}
 
 /// What samples have in common.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
@@ -61,8 +46,14 @@ pub struct MonthSums {
     pub cells: Vec<Vec<ClassSum>>,
 }
 
-/// Mean lift in K and COP; `None` where the air unit never works that way.
-pub type LiftCop = Option<(f64, f64)>;
+/// How the air unit works while it heats, or while it cools.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AirUnitSide {
+    /// Mean lift in K.
+    pub lift_k: f64,
+    /// Heat or cooling for electric energy.
+    pub cop: f64,
+}
 
 /// Heat flows of a design and window: means over the solved samples of a month.
 #[derive(Debug, Clone, PartialEq)]
@@ -77,10 +68,10 @@ pub struct MonthFlows {
     pub samples: u64,
     /// Means.
     pub flows: HeatFlows,
-    /// Mean lift in K and COP while the air unit heats; `None` where it never does.
-    pub heating: LiftCop,
+    /// The air unit while it heats; `None` where it never does.
+    pub heating: Option<AirUnitSide>,
     /// While it cools.
-    pub cooling: LiftCop,
+    pub cooling: Option<AirUnitSide>,
     /// Samples that ask for more electric power than the vehicle can give.
     pub over_limit: u64,
     /// Mean heat or cooling in W above the limit.
@@ -152,34 +143,6 @@ impl ClassSum {
 }
 
 impl Store {
-    /// Makes the bus of the database this one. What rests on another goes, or is added up again.
-    ///
-    /// # Errors
-    /// [`StoreError::Refused`], [`StoreError::Damaged`].
-    pub fn put_bus(&mut self, grid: &StoredGrid, bus: &BusRow) -> Result<(), StoreError> {
-        self.drive(async |c| {
-            let mut tx = begin(c).await?;
-            put_transfer(&mut tx, bus).await?;
-            let mut stored = BTreeSet::new();
-            for r in sqlx::query("SELECT * FROM power_limit").fetch_all(&mut *tx).await? {
-                let limits: [f64; 2] = [r.try_get("heating_limit_w")?, r.try_get("cooling_limit_w")?];
-                stored.insert((r.try_get::<i64, _>("design_id")?, limits.map(f64::to_bits)));
-            }
-            let wanted = |(id, limits): (&i64, &[f64; 2])| (*id, limits.map(f64::to_bits));
-            if stored != grid.design_ids.iter().zip(&bus.limits_w).map(wanted).collect() {
-                for (id, [heating_w, cooling_w]) in grid.design_ids.iter().zip(&bus.limits_w) {
-                    let row = Insert::replacing("power_limit").set("design_id", id)?;
-                    row.set("heating_limit_w", heating_w)?.set("cooling_limit_w", cooling_w)?.execute(&mut tx).await?;
-                }
-                for month in 1..=12 {
-                    sqlx::query("INSERT OR IGNORE INTO stale_month VALUES (?)").bind(month).execute(&mut *tx).await?;
-                }
-            }
-            seal_averages(&mut tx).await?;
-            commit(tx).await
-        })
-    }
-
     /// Months whose optima are to be averaged anew, in rising order.
     ///
     /// # Errors
@@ -215,24 +178,6 @@ impl Store {
             Ok(all)
         })
     }
-}
-
-async fn put_transfer(c: &mut SqliteConnection, bus: &BusRow) -> Result<(), StoreError> {
-    let t = &bus.transfer;
-    let row = Insert::replacing("heat_transfer")
-        .set("one", 1)?
-        .set("convection_shell_inside_w_k", t.convection_shell_inside_w_k)?
-        .set("convection_interior_w_k", t.convection_interior_w_k)?
-        .set("convection_radiant_heater_w_k", t.convection_radiant_heater_w_k)?
-        .set("convection_shell_outside_w_k", t.convection_shell_outside_w_k)?
-        .set("conduction_shell_w_k", t.conduction_shell_w_k)?
-        .set("radiation_heater_interior_w_k4", t.radiation_heater_interior_w_k4)?
-        .set("radiation_heater_shell_w_k4", t.radiation_heater_shell_w_k4)?
-        .set("radiation_interior_shell_w_k4", t.radiation_interior_shell_w_k4)?
-        .set("radiation_shell_outside_w_k4", t.radiation_shell_outside_w_k4)?
-        .set("passenger_heat_w", bus.passenger_heat_w)?
-        .set("other_heat_w", bus.other_heat_w)?;
-    row.execute(c).await.map(|_| ())
 }
 
 fn pack(sums: &[ClassSum]) -> Vec<u8> {
@@ -292,7 +237,8 @@ async fn put_classes(
     let mut rows = Insert::into("energy_class");
     for (n, class) in classes.iter().enumerate() {
         rows = if n == 0 { rows } else { rows.another() };
-        rows = point(rows, grid, class.design, class.window)?
+        rows = rows
+            .of_point(&grid.designs[class.design].name, grid.windows[class.window])?
             .set("sorted_by", class.class.sorted_by.clone())?
             .set("class", class.class.name.clone())?
             .set("class_order", class.class.order)?
@@ -324,41 +270,20 @@ async fn put_month(c: &mut SqliteConnection, grid: &StoredGrid, month: &MonthSum
 }
 
 async fn put_flows(c: &mut SqliteConnection, run_id: i64, grid: &StoredGrid, m: &MonthFlows) -> Result<(), StoreError> {
-    let (f, lift, cop) = (&m.flows, |side: LiftCop| side.map(|s| s.0), |side: LiftCop| side.map(|s| s.1));
-    let row = point(Insert::into("heat_flow_monthly"), grid, m.design, m.window)?
+    let mut row = Insert::into("heat_flow_monthly")
+        .of_point(&grid.designs[m.design].name, grid.windows[m.window])?
         .set("month", m.month)?
-        .set("sample_count", m.samples.cast_signed())?
-        .set("cabin_to_shell_w", f.convection_shell_inside_w)?
-        .set("interior_to_cabin_w", f.convection_interior_w)?
-        .set("shell_to_ambient_w", f.convection_shell_outside_w)?
-        .set("heater_to_cabin_w", f.convection_radiant_heater_w)?
-        .set("through_shell_w", f.conduction_shell_w)?
-        .set("shell_radiation_w", f.radiation_shell_outside_w)?
-        .set("heater_to_shell_w", f.radiation_heater_shell_w)?
-        .set("heater_to_interior_w", f.radiation_heater_interior_w)?
-        .set("interior_to_shell_w", f.radiation_interior_shell_w)?
-        .set("door_w", f.door_w)?
-        .set("passengers_w", f.passengers_w)?
-        .set("other_w", f.other_w)?
-        .set("air_unit_heat_w", f.air_unit_w)?
-        .set("radiant_heater_power_w", f.radiant_heater_power_w)?
-        .set("solar_interior_w", f.solar.interior_w)?
-        .set("solar_shell_inside_w", f.solar.shell_inside_w)?
-        .set("solar_shell_outside_w", f.solar.shell_outside_w)?
-        .set("heating_lift_k", lift(m.heating))?
-        .set("heating_cop", cop(m.heating))?
-        .set("cooling_lift_k", lift(m.cooling))?
-        .set("cooling_cop", cop(m.cooling))?
+        .set("sample_count", m.samples.cast_signed())?;
+    for (column, _, flow_w) in m.flows.named_w() {
+        row = row.set(column, flow_w)?;
+    }
+    let row = row
+        .set("heating_lift_k", m.heating.map(|side| side.lift_k))?
+        .set("heating_cop", m.heating.map(|side| side.cop))?
+        .set("cooling_lift_k", m.cooling.map(|side| side.lift_k))?
+        .set("cooling_cop", m.cooling.map(|side| side.cop))?
         .set("over_limit_count", m.over_limit.cast_signed())?
         .set("unmet_heat_w", m.unmet_heat_w)?
         .set("run_id", run_id)?;
     row.execute(c).await.map(|_| ())
-}
-
-fn point(row: Insert, grid: &StoredGrid, design: usize, window: usize) -> Result<Insert, StoreError> {
-    let window = grid.windows[window];
-    row.set("design", grid.designs[design].name.clone())?
-        .set("pmv_limit", window.pmv_limit())?
-        .set("pmv_min", window.pmv_min())?
-        .set("pmv_max", window.pmv_max())
 }

@@ -5,7 +5,7 @@ use sqlx::Row;
 use std::collections::BTreeMap;
 
 use crate::checks::commit;
-use crate::row::{Insert, begin, count, window};
+use crate::row::{Insert, begin, count, window, word};
 use crate::{Store, StoreError};
 
 /// An annual average as a run left it.
@@ -47,6 +47,10 @@ impl ChangeKind {
             Self::Input => "input",
             Self::Samples => "samples",
         }
+    }
+
+    fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|kind| kind.name() == name)
     }
 }
 
@@ -96,8 +100,7 @@ impl Store {
             UNION ALL
             SELECT 'samples', 'samples', CAST(count(*) AS TEXT) FROM hourly_sample";
         let rows = self.select(sql, |r| {
-            let kind: String = r.try_get("kind")?;
-            let kind = ChangeKind::ALL.into_iter().find(|k| k.name() == kind).unwrap_or(ChangeKind::Samples);
+            let kind = word(r, "kind", ChangeKind::from_name)?;
             Ok(((kind, r.try_get("name")?), r.try_get("value")?))
         })?;
         Ok(rows.into_iter().collect())
@@ -133,9 +136,8 @@ impl Store {
             let sql = "SELECT * FROM run_change WHERE run_id > ? AND run_id <= ? ORDER BY run_id, position";
             let rows = sqlx::query(sql).bind(after_run).bind(to_run).fetch_all(c).await?;
             let change = |r: &sqlx::sqlite::SqliteRow| {
-                let kind: String = r.try_get("kind")?;
                 let change = Change {
-                    kind: ChangeKind::ALL.into_iter().find(|k| k.name() == kind).unwrap_or(ChangeKind::Samples),
+                    kind: word(r, "kind", ChangeKind::from_name)?,
                     name: r.try_get("name")?,
                     before: r.try_get("before_value")?,
                     after: r.try_get("after_value")?,

@@ -5,6 +5,7 @@
 //! its views, described in `docs/database.md`.
 
 mod averages;
+mod bus;
 mod checks;
 mod clouds;
 mod connection;
@@ -31,13 +32,14 @@ mod verification;
 mod views;
 
 pub use self::setpoints::SetpointRow;
+pub use bus::BusRow;
 pub use checks::Checked;
 pub use clouds::{Cloud, CloudPoint};
 pub use connection::{Store, lock_path};
 pub use control_views::{ControlClass, ControlMinute, ControlPoint, ControlTrace, ControlYear, Outside};
 pub use controls::{ControlId, ControlRow, ControlledMission};
 pub use dictionary::{Column, ColumnKind, Relation, dictionary};
-pub use energy::{Bin, BusRow, Class, ClassSum, ClassYear, Energy, LiftCop, MonthFlows, MonthSums};
+pub use energy::{AirUnitSide, Bin, Class, ClassSum, ClassYear, Energy, MonthFlows, MonthSums};
 pub use error::StoreError;
 pub use files::KnownFile;
 pub use grid::{DesignRow, GridChange, StoredGrid};

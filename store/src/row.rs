@@ -45,6 +45,14 @@ impl Insert {
         Ok(self)
     }
 
+    /// The columns by which analysts know a design and a comfort window.
+    pub fn of_point(self, design: &str, window: ComfortWindow) -> Result<Self, StoreError> {
+        self.set("design", design)?
+            .set("pmv_limit", window.pmv_limit())?
+            .set("pmv_min", window.pmv_min())?
+            .set("pmv_max", window.pmv_max())
+    }
+
     /// Begins another row; its columns come in the same order.
     pub fn another(mut self) -> Self {
         self.rows += 1;

@@ -77,14 +77,7 @@ pub(crate) async fn put(c: &mut SqliteConnection, run_id: i64, rows: &[SetpointR
         sqlx::query(sqlx::AssertSqlSafe(format!("DELETE FROM {table}"))).execute(&mut *c).await?;
     }
     for row in rows {
-        let into = |table: &'static str| {
-            Insert::into(table)
-                .set("design", row.design.as_str())?
-                .set("pmv_limit", row.window.pmv_limit())?
-                .set("pmv_min", row.window.pmv_min())?
-                .set("pmv_max", row.window.pmv_max())?
-                .set("run_id", run_id)
-        };
+        let into = |table: &'static str| Insert::into(table).of_point(&row.design, row.window)?.set("run_id", run_id);
         for ((_, mode), profile) in MODES.iter().zip([&row.setpoints.heating, &row.setpoints.cooling]) {
             let insert = into("setpoint_profile")?.set("mode", *mode)?;
             let insert = match profile {

@@ -1,7 +1,7 @@
 //! Mean heat flows of a month, and what is asked above the vehicle's power limits.
 
 use cabin::{Cabin, HeatFlows, OperatingMode, Operation};
-use store::{LiftCop, MonthFlows};
+use store::{AirUnitSide, MonthFlows};
 
 /// Sums of a month that is being added up, by design and window.
 pub struct Flows(Vec<Sum>);
@@ -78,8 +78,8 @@ impl Flows {
 }
 
 impl Side {
-    fn mean(&self) -> LiftCop {
-        (self.samples > 0 && self.power_w > 0.0)
-            .then(|| (self.lift_k / self.samples as f64, self.heat_w / self.power_w))
+    fn mean(&self) -> Option<AirUnitSide> {
+        let runs = self.samples > 0 && self.power_w > 0.0;
+        runs.then(|| AirUnitSide { lift_k: self.lift_k / self.samples as f64, cop: self.heat_w / self.power_w })
     }
 }

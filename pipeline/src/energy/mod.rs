@@ -8,11 +8,11 @@ mod classes;
 mod flows;
 mod year;
 
-use cabin::{Cabin, HeatTransfer, PassengerViews};
+use cabin::{Cabin, Design, HeatTransfer, PassengerViews};
 use ingest::sample::Sample;
 use simulate::{Limits, PowerLimits};
 use std::collections::BTreeMap;
-use store::{BusRow, Energy, Store, StoredGrid};
+use store::{BusRow, Energy, MonthSums, Store, StoredGrid};
 use study::Study;
 
 use self::classes::Classes;
@@ -22,17 +22,22 @@ use crate::{PipelineError, Progress};
 /// Samples whose optima are read at once.
 const BLOCK: usize = 64;
 
-/// What the optima of a study are found with, and what the vehicle can give.
-pub(crate) fn bus(study: &Study) -> BusRow {
-    let limits_w = |design: &cabin::Design| {
+/// Electric power of the air unit in W that the vehicle can give in heating and in cooling, by design.
+pub(crate) fn power_limits_w(study: &Study) -> Vec<[f64; 2]> {
+    let of_design = |design: &Design| {
         let PowerLimits { heating_w, cooling_w, .. } = Limits::Rated.of(design, &study.dynamics);
         [heating_w, cooling_w]
     };
+    study.grid.designs().iter().map(of_design).collect()
+}
+
+/// What the optima of a study are found with, and what the vehicle can give.
+pub(crate) fn bus(study: &Study) -> BusRow {
     BusRow {
         transfer: HeatTransfer::of(&study.vehicle),
         passenger_heat_w: study.vehicle.passenger_heat_w,
         other_heat_w: study.vehicle.other_heat_w,
-        limits_w: study.grid.designs().iter().map(limits_w).collect(),
+        limits_w: power_limits_w(study),
     }
 }
 
@@ -50,7 +55,7 @@ pub(crate) fn energy(
     let mut flows: BTreeMap<u8, Flows> = BTreeMap::new();
     let views = PassengerViews::new(&study.vehicle);
     let windows = study.grid.windows().len();
-    let limits_w = bus(study).limits_w;
+    let limits_w = power_limits_w(study);
     let all: Vec<&Sample> = samples.values().collect();
     let is_stale = |s: &Sample| stale.contains(&s.month);
     // Runs of stale months in the order of the ids.
@@ -75,11 +80,11 @@ pub(crate) fn energy(
             }
         }
     }
-    let sums: Vec<_> = classes.into_iter().map(|(month, classes)| classes.finish(month)).collect();
+    let sums: Vec<MonthSums> = classes.into_iter().map(|(month, classes)| classes.finish(month)).collect();
     let flows = flows.into_iter().flat_map(|(month, flows)| flows.finish(month, windows)).collect();
     let months = store.months()?;
-    let mut year = store.month_sums(grid)?;
-    year.extend(sums.iter().cloned());
+    let kept = store.month_sums(grid)?;
+    let mut year: Vec<&MonthSums> = kept.iter().chain(&sums).collect();
     year.sort_by_key(|m| m.month);
     let classes = year::classes(&year, &months, windows);
     let bins = bins::bins(&all, &months);

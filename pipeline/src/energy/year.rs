@@ -6,12 +6,12 @@ use store::{Class, ClassSum, ClassYear, MonthRow, MonthSums};
 const J_PER_KWH_AND_M_PER_KM: f64 = 3600.0;
 
 /// What every class comes to, for each design and window.
-pub fn classes(year: &[MonthSums], months: &[MonthRow], windows: usize) -> Vec<ClassYear> {
+pub fn classes(year: &[&MonthSums], months: &[MonthRow], windows: usize) -> Vec<ClassYear> {
     let points = year.first().map_or(0, |m| m.cells.len());
     (0..points).flat_map(|point| of_point(year, months, point, windows)).collect()
 }
 
-fn of_point(year: &[MonthSums], months: &[MonthRow], point: usize, windows: usize) -> Vec<ClassYear> {
+fn of_point(year: &[&MonthSums], months: &[MonthRow], point: usize, windows: usize) -> Vec<ClassYear> {
     // Every sample is in the class of the whole year.
     let solved = |month: &MonthSums| {
         let whole = month.classes.iter().position(|class| class.sorted_by == "year");
@@ -21,7 +21,7 @@ fn of_point(year: &[MonthSums], months: &[MonthRow], point: usize, windows: usiz
         let row = months.iter().find(|m| m.month == month.month).filter(|_| solved(month) > 0.0);
         row.map_or(0.0, |m| m.sample_weight * m.sample_count as f64)
     };
-    let all: f64 = year.iter().map(share).sum();
+    let all: f64 = year.iter().map(|m| share(m)).sum();
     let mut classes: BTreeMap<&Class, (ClassSum, u64)> = BTreeMap::new();
     for month in year.iter().filter(|m| share(m) > 0.0) {
         let weight = share(month) / all / solved(month);
