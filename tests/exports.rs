@@ -90,6 +90,11 @@ fn prop_look_up_tables_are_optima_on_a_full_grid() {
     assert_eq!(rich.lines().count(), 1 + 5 * 2 * 13 * 5 * 3 * 4);
     let package = String::from_utf8(all["datapackage.json"].clone()).unwrap();
     assert!(package.contains("HVAC share") && package.contains("\"level_of_loading_1_is_passengers\": 100.0"));
+    for capacity in ["-1", "NaN", "1e9"] {
+        let refused =
+            scratch.expect(2, &["export", "--format", "lut", "--to", "none", &format!("--capacity={capacity}")]);
+        assert!(refused.stderr.contains("give 1 to 500 people"), "{}", refused.stderr);
+    }
     let arguments = [scratch.path("lut").to_string_lossy().into_owned()];
     if let Some(lines) = peer("lut.py", "eflips.model", &arguments) {
         assert!(lines.iter().all(|line| line[1] == "1365"), "{lines:?}");

@@ -28,34 +28,34 @@ def save(figure, name):
     figure.savefig(folder / name, dpi=150)
 
 
+def curves(frame, x, y, x_label, y_label, name):
+    """A line for each design."""
+    figure, axes = plt.subplots(figsize=(7, 4.5))
+    for design, of in frame.groupby("design"):
+        axes.plot(of[x], of[y], marker="o", markersize=3, label=design)
+    axes.set_xlabel(x_label)
+    axes.set_ylabel(y_label)
+    axes.set_ylim(bottom=0.0)
+    axes.legend()
+    save(figure, name)
+
+
 # %% What does comfort cost over the year?
 annual = read("SELECT design, pmv_limit, hvac_power_w, reduction_vs_ptc FROM annual_average ORDER BY pmv_limit")
 at_one = annual[annual.pmv_limit == 1.0].set_index("design")
 print("Annual mean power within PMV ±1:")
 print(at_one[["hvac_power_w", "reduction_vs_ptc"]].round(3).to_string())
 
-figure, axes = plt.subplots(figsize=(7, 4.5))
-for design, of in annual.groupby("design"):
-    axes.plot(of.pmv_limit, of.hvac_power_w / 1000.0, marker="o", markersize=3, label=design)
-axes.set_xlabel("limit of comfort, PMV")
-axes.set_ylabel("annual mean HVAC power in kW")
-axes.set_ylim(bottom=0.0)
-axes.legend()
-save(figure, "comfort.png")
+annual["hvac_power_kw"] = annual.hvac_power_w / 1000.0
+curves(annual, "pmv_limit", "hvac_power_kw", "limit of comfort, PMV", "annual mean HVAC power in kW", "comfort.png")
 
 # %% What is to be expected at which temperature?
 classes = read(
     """SELECT design, class, class_order, kwh_per_km FROM energy_class
        WHERE sorted_by = 'ambient temperature in °C' AND pmv_limit = 1 ORDER BY class_order"""
 )
-figure, axes = plt.subplots(figsize=(7, 4.5))
-for design, of in classes.groupby("design"):
-    axes.plot(5.0 * of.class_order + 2.5, of.kwh_per_km, marker="o", markersize=3, label=design)
-axes.set_xlabel("ambient temperature in °C")
-axes.set_ylabel("HVAC energy in kWh/km")
-axes.set_ylim(bottom=0.0)
-axes.legend()
-save(figure, "temperature.png")
+classes["ambient_c"] = 5.0 * classes.class_order + 2.5
+curves(classes, "ambient_c", "kwh_per_km", "ambient temperature in °C", "HVAC energy in kWh/km", "temperature.png")
 
 # %% Where does the heat come from and go to?
 flows = read(

@@ -10,7 +10,20 @@ pub use lut::{Loading, look_up_tables};
 pub use tables::tables;
 pub use words::{datasette, json, markdown, questions_markdown};
 
-use std::path::PathBuf;
+use std::fs::File;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use store::Relation;
+
+/// The file that says what an export holds, and by which a folder is known as one.
+pub const PACKAGE: &str = "datapackage.json";
+
+/// What exports of any kind put into their folder, files and folders by name.
+#[must_use]
+pub fn names(relations: &[Relation]) -> Vec<&str> {
+    let of_tables = relations.iter().map(|r| r.name.as_str());
+    of_tables.chain([PACKAGE, lut::CONSUMPTION, lut::HVAC_POWER]).collect()
+}
 
 /// How tables are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -77,4 +90,19 @@ pub enum ExportError {
     /// There are no samples to take weather from.
     #[error("the database has no samples to take weather, sun and doors from; run `busclimate run` first")]
     NoSamples,
+}
+
+/// Writes a file that lasts.
+fn write_synced(path: &Path, text: &str) -> Result<(), ExportError> {
+    let written = File::create(path).and_then(|mut file| {
+        file.write_all(text.as_bytes())?;
+        file.sync_all()
+    });
+    written.map_err(|e| ExportError::Write(path.to_owned(), e))
+}
+
+/// Makes the folder that a file lies in.
+fn make_folder_of(path: &Path) -> Result<(), ExportError> {
+    let Some(folder) = path.parent() else { return Ok(()) };
+    std::fs::create_dir_all(folder).map_err(|e| ExportError::Write(folder.to_owned(), e))
 }

@@ -1,7 +1,7 @@
 //! Look-up tables for fleet planners: what HVAC takes at a temperature, load and speed.
 //!
-//! Every value is an optimum of its own at disturbances on a grid, found as the study's are. It is HVAC alone: a planner adds it to
-//! what driving takes. The plain tables have the columns that SimBA and eFLIPS read
+//! Every value is an optimum of its own at disturbances on a grid, found by the fast method whatever the study's. It is HVAC alone: a
+//! planner adds it to what driving takes. The plain tables have the columns that SimBA and eFLIPS read
 //! (<https://github.com/rl-institut/simba>, `ConsumptionLut` of <https://github.com/mpm-tu-berlin/eflips-model>), with doors and sun as the
 //! study has them at each temperature; the rich one has doors and sun as columns.
 
@@ -12,7 +12,11 @@ use std::path::Path;
 use store::Store;
 use study::Study;
 
-use crate::{ExportError, Provenance};
+use crate::{ExportError, PACKAGE, Provenance, make_folder_of, write_synced};
+
+/// The folder of the plain tables, and the rich one.
+pub(crate) const CONSUMPTION: &str = "consumption";
+pub(crate) const HVAC_POWER: &str = "hvac_power.csv";
 
 const AMBIENT_C: [f64; 13] = [-20.0, -15.0, -10.0, -5.0, 0.0, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0];
 const LOADING: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
@@ -36,7 +40,6 @@ pub struct Loading {
 struct Typical {
     weight: f64,
     door_open_fraction: f64,
-    dni_w_m2: f64,
     dhi_w_m2: f64,
     global_w_m2: f64,
     shadow_fraction: f64,
@@ -57,7 +60,7 @@ pub fn look_up_tables(
 ) -> Result<(), ExportError> {
     let typical = typical_by_temperature(store)?;
     let mean = overall(&typical).ok_or(ExportError::NoSamples)?;
-    let at: Vec<Typical> = AMBIENT_C.iter().map(|t| nearest(&typical, *t).unwrap_or(mean).lit()).collect();
+    let at: Vec<Typical> = AMBIENT_C.iter().map(|t| nearest(&typical, *t).unwrap_or(mean)).collect();
     let views = PassengerViews::new(&study.vehicle);
     let mut solver = SampleSolver::new(&study.vehicle, &views, &study.grid);
     let mut solve = |d: &Disturbances| {
@@ -68,7 +71,8 @@ pub fn look_up_tables(
 
     let mut plain: Vec<Vec<Optimum>> = Vec::new();
     for (ambient_c, typical) in AMBIENT_C.iter().zip(&at) {
-        plain.extend(LOADING.iter().map(|level| solve(&typical.at(*ambient_c, level * loading.capacity))));
+        let at = |level: &f64| typical.at(*ambient_c, level * loading.capacity, typical.global_w_m2);
+        plain.extend(LOADING.iter().map(|level| solve(&at(level))));
     }
     let mut left_out = 0;
     for (design, spec) in study.grid.designs().iter().enumerate() {
@@ -80,7 +84,7 @@ pub fn look_up_tables(
         }
     }
     let rich = |csv: &mut csv::Writer<std::fs::File>| rich_table(csv, study, loading, &mean, &mut solve);
-    let unsolved = write(&folder.join("hvac_power.csv"), rich)?;
+    let unsolved = write(&folder.join(HVAC_POWER), rich)?;
     let about = json!({
         "profile": "data-package", "name": provenance.name(),
         "title": "HVAC share of the consumption of an electric bus",
@@ -90,8 +94,7 @@ pub fn look_up_tables(
         "shadow_fraction": mean.shadow_fraction, "study": provenance.study, "study_hash": provenance.study_hash,
         "input_hash": provenance.input_hash, "program_version": provenance.program_version,
     });
-    let path = folder.join("datapackage.json");
-    std::fs::write(&path, format!("{about:#}\n")).map_err(|e| ExportError::Write(path, e))
+    write_synced(&folder.join(PACKAGE), &format!("{about:#}\n"))
 }
 
 /// Writes a table; gives how many points had no operation.
@@ -99,8 +102,7 @@ fn write(
     path: &Path,
     table: impl FnOnce(&mut csv::Writer<std::fs::File>) -> csv::Result<usize>,
 ) -> Result<usize, ExportError> {
-    let above = path.parent().unwrap_or(path);
-    std::fs::create_dir_all(above).map_err(|e| ExportError::Write(above.to_owned(), e))?;
+    make_folder_of(path)?;
     let mut writer = csv::Writer::from_path(path).map_err(|e| ExportError::Csv(path.to_owned(), e))?;
     let missing = table(&mut writer).map_err(|e| ExportError::Csv(path.to_owned(), e))?;
     let file = writer.into_inner().map_err(|e| ExportError::Write(path.to_owned(), e.into_error()))?;
@@ -111,7 +113,7 @@ fn write(
 fn file_name(design: &str, window: &ComfortWindow) -> String {
     let plain = |c: char| if c.is_ascii_alphanumeric() || "-_.+".contains(c) { c } else { '_' };
     let design: String = design.chars().map(plain).collect();
-    format!("consumption/{design}_pmv_{}_{}.csv", window.pmv_min(), window.pmv_max())
+    format!("{CONSUMPTION}/{design}_pmv_{}_{}.csv", window.pmv_min(), window.pmv_max())
 }
 
 fn plain_table(csv: &mut csv::Writer<std::fs::File>, optima: &[&Optimum]) -> csv::Result<usize> {
@@ -155,8 +157,8 @@ fn rich_table(
         for level in LOADING {
             for door_open_fraction in DOORS {
                 for global_w_m2 in IRRADIANCE_W_M2 {
-                    let sun = mean.in_light(global_w_m2);
-                    let d = Disturbances { door_open_fraction, ..sun.at(ambient_c, level * loading.capacity) };
+                    let typical = mean.at(ambient_c, level * loading.capacity, global_w_m2);
+                    let d = Disturbances { door_open_fraction, ..typical };
                     for optimum in solve(&d) {
                         let window = study.grid.windows()[optimum.window];
                         let power_w = optimum.outcome.operation().map(|o| o.hvac_power_w().to_string());
@@ -209,7 +211,6 @@ impl Typical {
         let global_w_m2 = roof_irradiance_w_m2(d);
         self.weight += weight;
         self.door_open_fraction += weight * d.door_open_fraction;
-        self.dni_w_m2 += weight * d.dni_w_m2;
         self.dhi_w_m2 += weight * d.dhi_w_m2;
         self.global_w_m2 += weight * global_w_m2;
         self.shadow_fraction += weight * d.shadow_fraction;
@@ -222,7 +223,6 @@ impl Typical {
         Self {
             weight: 1.0,
             door_open_fraction: self.door_open_fraction / w,
-            dni_w_m2: self.dni_w_m2 / w,
             dhi_w_m2: self.dhi_w_m2 / w,
             global_w_m2: self.global_w_m2 / w,
             shadow_fraction: self.shadow_fraction / w,
@@ -230,25 +230,15 @@ impl Typical {
         }
     }
 
-    /// With the beam that gives the mean on the ground at the mean altitude.
-    fn lit(&self) -> Self {
-        self.in_light(self.global_w_m2)
-    }
-
-    /// The same mixture of light, as strong as wanted on the ground.
-    fn in_light(&self, global_w_m2: f64) -> Self {
+    /// Disturbances in the same mixture of light, as strong as wanted on the ground; the beam comes from the mean altitude.
+    fn at(&self, ambient_c: f64, passengers: f64, global_w_m2: f64) -> Disturbances {
         let factor = if self.global_w_m2 > 0.0 { global_w_m2 / self.global_w_m2 } else { 0.0 };
-        let beam_w_m2 = (self.global_w_m2 - self.dhi_w_m2) * factor;
         let up = self.altitude_rad.sin();
-        let dni_w_m2 = if up > 0.0 { beam_w_m2 / up } else { 0.0 };
-        Self { dni_w_m2, dhi_w_m2: self.dhi_w_m2 * factor, global_w_m2, ..*self }
-    }
-
-    fn at(&self, ambient_c: f64, passengers: f64) -> Disturbances {
+        let beam_w_m2 = (self.global_w_m2 - self.dhi_w_m2) * factor;
         Disturbances {
             ambient_temperature_k: kelvin(ambient_c),
-            dni_w_m2: self.dni_w_m2,
-            dhi_w_m2: self.dhi_w_m2,
+            dni_w_m2: if up > 0.0 { beam_w_m2 / up } else { 0.0 },
+            dhi_w_m2: self.dhi_w_m2 * factor,
             solar_altitude_rad: self.altitude_rad,
             shadow_fraction: self.shadow_fraction,
             passengers,

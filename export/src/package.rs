@@ -4,17 +4,18 @@ use serde_json::{Value, json};
 use store::{ColumnKind, Relation};
 
 use crate::tables::Written;
-use crate::{Format, Provenance};
+use crate::{Format, Provenance, words};
 
 /// `datapackage.json`: each table with its files, columns, units and words.
 pub(crate) fn text(relations: &[Relation], written: &[Written], format: Format, provenance: &Provenance) -> String {
     let resource = |(n, relation): (usize, &Relation)| {
         let paths: Vec<&str> = written.iter().filter(|w| w.relation == n).map(|w| w.path.as_str()).collect();
         let field = |c: &store::Column| {
-            json!({
-                "name": c.name, "type": kind(c.kind), "unit": c.unit, "description": c.text, "source": c.source,
-                "partition": paths.iter().any(|p| p.contains(&format!("/{}=", c.name))),
-            })
+            let mut field = words::field(c);
+            // A data package has words of its own for types.
+            field["type"] = Value::from(kind(c.kind));
+            field["partition"] = Value::from(paths.iter().any(|p| p.contains(&format!("/{}=", c.name))));
+            field
         };
         json!({
             "name": relation.name, "title": relation.title, "description": relation.text, "path": paths,

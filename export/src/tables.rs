@@ -15,7 +15,7 @@ use std::path::Path;
 use std::sync::Arc;
 use store::{ColumnKind, Relation, Store, Values};
 
-use crate::{ExportError, Format, Provenance, package, words};
+use crate::{ExportError, Format, PACKAGE, Provenance, make_folder_of, package, words, write_synced};
 
 /// Rows of a portion, and of a row group.
 const PORTION: usize = 65_536;
@@ -49,15 +49,12 @@ pub fn tables(
             let within = design.map_or(String::new(), |d| format!("/{DESIGN}={}", encoded(d)));
             let path = format!("{}{within}/part-0.{}", relation.name, format.extension());
             let file = folder.join(&path);
-            let above = file.parent().unwrap_or(folder);
-            std::fs::create_dir_all(above).map_err(|e| ExportError::Write(above.to_owned(), e))?;
+            make_folder_of(&file)?;
             part(store, relation, design, format, provenance, &file)?;
             written.push(Written { relation: n, path });
         }
     }
-    let path = folder.join("datapackage.json");
-    let text = package::text(relations, &written, format, provenance);
-    std::fs::write(&path, text).map_err(|e| ExportError::Write(path, e))
+    write_synced(&folder.join(PACKAGE), &package::text(relations, &written, format, provenance))
 }
 
 fn part(
@@ -69,16 +66,18 @@ fn part(
     path: &Path,
 ) -> Result<(), ExportError> {
     let file = File::create(path).map_err(|e| ExportError::Write(path.to_owned(), e))?;
-    let kept: Vec<bool> = relation.columns.iter().map(|c| design.is_none() || c.name != DESIGN).collect();
-    let schema = schema(relation, &kept);
+    // What the folder's name says is not in its files.
+    let is_kept = |c: &&store::Column| design.is_none() || c.name != DESIGN;
+    let columns: Vec<&store::Column> = relation.columns.iter().filter(is_kept).collect();
+    let schema: Schema = columns.iter().map(|c| Field::new(c.name.as_str().into(), kind(c.kind))).collect();
     let mut sink = match format {
-        Format::Parquet => Sink::parquet(file, &schema, relation, &kept, provenance),
+        Format::Parquet => Sink::parquet(file, &schema, relation, &columns, provenance),
         Format::Csv => Sink::csv(file, &schema),
     }
     .map_err(|e| ExportError::Polars(path.to_owned(), e))?;
     let mut outcome = Ok(());
     store.portions(relation, design, PORTION, &mut |values| {
-        outcome = frame(relation, &kept, values).and_then(|frame| sink.write(&frame));
+        outcome = frame(relation, &columns, values).and_then(|frame| sink.write(&frame));
         if outcome.is_err() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     })?;
     let file = outcome.and_then(|()| sink.finish()).map_err(|e| ExportError::Polars(path.to_owned(), e))?;
@@ -96,13 +95,13 @@ impl Sink {
         file: File,
         schema: &Schema,
         relation: &Relation,
-        kept: &[bool],
+        columns: &[&store::Column],
         provenance: &Provenance,
     ) -> PolarsResult<Self> {
-        let mut about = vec![("ARROW:schema".to_owned(), arrow_schema(schema, relation, kept))];
+        let mut about = vec![("ARROW:schema".to_owned(), arrow_schema(schema, columns))];
         about.push(("busclimate:table".to_owned(), relation.name.clone()));
         about.push(("busclimate:description".to_owned(), relation.about()));
-        let fields: Vec<_> = relation.columns.iter().zip(kept).filter(|k| *k.1).map(|(c, _)| words::field(c)).collect();
+        let fields: Vec<_> = columns.iter().map(|c| words::field(c)).collect();
         about.push(("busclimate:columns".to_owned(), serde_json::json!(fields).to_string()));
         about.extend(provenance.pairs().map(|(key, value)| (format!("busclimate:{key}"), value)));
         let copy = file.try_clone()?;
@@ -145,16 +144,10 @@ fn kind(kind: ColumnKind) -> DataType {
     }
 }
 
-fn schema(relation: &Relation, kept: &[bool]) -> Schema {
-    let fields = relation.columns.iter().zip(kept).filter(|k| *k.1);
-    fields.map(|(c, _)| Field::new(c.name.as_str().into(), kind(c.kind))).collect()
-}
-
 /// The schema with words at its fields, as readers of Arrow look for them.
-fn arrow_schema(schema: &Schema, relation: &Relation, kept: &[bool]) -> String {
-    let words = relation.columns.iter().zip(kept).filter(|k| *k.1).map(|(c, _)| c);
+fn arrow_schema(schema: &Schema, columns: &[&store::Column]) -> String {
     let mut fields = ArrowSchema::default();
-    for ((name, kind), column) in schema.iter().zip(words) {
+    for ((name, kind), column) in schema.iter().zip(columns) {
         let mut field = kind.to_arrow_field(name.clone(), CompatLevel::newest());
         let about = [("unit", &column.unit), ("description", &column.text), ("source", &column.source)];
         let about: Metadata = about.map(|(key, value)| (key.into(), value.as_str().into())).into_iter().collect();
@@ -164,8 +157,10 @@ fn arrow_schema(schema: &Schema, relation: &Relation, kept: &[bool]) -> String {
     schema_to_metadata_key(&fields).value.unwrap_or_default()
 }
 
-fn frame(relation: &Relation, kept: &[bool], values: &[Values]) -> PolarsResult<DataFrame> {
-    let column = |((column, values), _): ((&store::Column, &Values), &bool)| {
+/// The kept columns of a portion, whose values are those of all columns.
+fn frame(relation: &Relation, columns: &[&store::Column], values: &[Values]) -> PolarsResult<DataFrame> {
+    let is_kept = |(column, _): &(&store::Column, &Values)| columns.iter().any(|kept| kept.name == column.name);
+    let series = |(column, values): (&store::Column, &Values)| {
         let name = column.name.as_str().into();
         Column::from(match values {
             Values::Integer(values) => Series::new(name, values),
@@ -173,8 +168,7 @@ fn frame(relation: &Relation, kept: &[bool], values: &[Values]) -> PolarsResult<
             Values::Text(values) => Series::new(name, values),
         })
     };
-    let kept = relation.columns.iter().zip(values).zip(kept).filter(|k| *k.1);
-    DataFrame::new_infer_height(kept.map(column).collect())
+    DataFrame::new_infer_height(relation.columns.iter().zip(values).filter(is_kept).map(series).collect())
 }
 
 /// A value as the name of a folder, as readers of such folders decode it.

@@ -72,6 +72,7 @@ pub fn json(relations: &[Relation], questions: &[Question]) -> Value {
     })
 }
 
+/// A column in a document that machines read.
 pub(crate) fn field(c: &Column) -> Value {
     json!({ "name": c.name, "type": c.kind.name(), "unit": c.unit, "description": c.text, "source": c.source })
 }

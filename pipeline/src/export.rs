@@ -1,8 +1,9 @@
 //! The database as files for other tools, in a folder that appears whole or not at all.
 
-use ::export::{Format, Loading, Provenance};
+use ::export::{Format, Loading, PACKAGE, Provenance};
 use std::cell::RefCell;
 use std::io::ErrorKind;
+use std::ops::RangeInclusive;
 use std::path::Path;
 use store::{dictionary, questions};
 use study::Study;
@@ -32,15 +33,21 @@ pub enum Words {
     Datasette,
 }
 
-/// The file by which a folder is known as an export.
-const PACKAGE: &str = "datapackage.json";
+/// People that a full bus may hold.
+const PEOPLE: RangeInclusive<f64> = 1.0..=500.0;
 
 /// Writes files of a study's database into a folder: a new one, an empty one, or one that holds an export, which is replaced.
 ///
 /// # Errors
-/// [`PipelineError::Request`] where the folder holds something else; [`PipelineError::Store`], [`PipelineError::Export`],
+/// [`PipelineError::Request`] where the folder holds something else or the bus no people; [`PipelineError::Store`], [`PipelineError::Export`],
 /// [`PipelineError::Write`].
 pub fn export(study: &Study, wanted: Export, to: &Path, progress: &dyn Progress) -> Result<(), PipelineError> {
+    if let Export::LookUpTables(Loading { capacity }) = wanted
+        && !PEOPLE.contains(&capacity)
+    {
+        let (least, most) = (PEOPLE.start(), PEOPLE.end());
+        return Err(PipelineError::Request(format!("--capacity {capacity}: give {least} to {most} people")));
+    }
     let cannot = |source| PipelineError::Write { path: to.to_owned(), source };
     let is_empty = match std::fs::read_dir(to) {
         Ok(mut entries) => entries.next().is_none(),
@@ -64,8 +71,6 @@ pub fn export(study: &Study, wanted: Export, to: &Path, progress: &dyn Progress)
             input_hash: input_hash(store)?,
             program_version: last.map_or_else(|| PROGRAM_VERSION.to_owned(), |run| run.program_version),
         };
-        let mut ours: Vec<&str> = relations.iter().map(|r| r.name.as_str()).collect();
-        ours.extend([PACKAGE, "consumption", "hvac_power.csv"]);
         let (store, failed) = (RefCell::new(store), RefCell::new(None));
         let write = |new: &Path| {
             let (store, p) = (&mut **store.borrow_mut(), &provenance);
@@ -78,7 +83,7 @@ pub fn export(study: &Study, wanted: Export, to: &Path, progress: &dyn Progress)
                 std::io::Error::other("nothing is exported")
             })
         };
-        let filled = folder::fill(to, &ours, &write);
+        let filled = folder::fill(to, &::export::names(&relations), &write);
         match (filled, failed.into_inner()) {
             (_, Some(error)) => Err(PipelineError::from(error)),
             (filled, None) => filled.map_err(cannot),
