@@ -35,6 +35,10 @@ fn database(path: &Path) -> Result<PathBuf, Failure> {
     if path.is_file() && std::fs::File::open(path).is_ok_and(|mut file| begins(&mut file)) {
         return Ok(path.to_owned());
     }
+    if !path.exists() {
+        let path = path.display();
+        return Err(Failure::Usage(anyhow!("there is no {path}; name a database, a study file or the folder of one")));
+    }
     Ok(open(&StudyArgs { study: Some(path.to_owned()), db: None })?.database)
 }
 

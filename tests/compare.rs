@@ -43,8 +43,8 @@ fn cli_databases_are_compared_by_settings_inputs_samples_and_averages() {
     let ptc = rows.iter().find(|r| &r[0] == "hvac_power_w" && &r[2] == "ptc").unwrap();
     assert!((ptc[7].parse::<f64>().unwrap() - change).abs() < 1e-9);
     // What is no database and no study is said.
-    let refused = scratch.expect(2, &["compare", "before.db", "nothing.toml"]);
-    assert!(refused.stderr.contains("nothing.toml"), "{}", refused.stderr);
+    let refused = scratch.expect(2, &["compare", "before.db", "nothing.db"]);
+    assert!(refused.stderr.contains("there is no nothing.db; name a database"), "{}", refused.stderr);
 }
 
 #[test]
