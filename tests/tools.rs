@@ -27,12 +27,10 @@ fn xval_tools_read_what_sqlite_reads() {
     let scratch = Scratch::small(24, "{ from = 0.0, to = 1.0, step = 0.1 }", "[0.5]");
     scratch.edit("study.toml", "[0.25, 0.5, 0.625, 0.75, 1.0, 1.25, 1.5, 2.0]", "[0.3, 1.0]");
     scratch.expect(0, &["run"]);
-    let database = scratch.path("study.db").to_string_lossy().into_owned();
-    let Some(lines) =
-        peer("tools.py", "duckdb, duckdb_extension_sqlite_scanner, datasette, pandas, polars", &[database])
-    else {
-        return;
-    };
+    scratch.write("words.json", scratch.expect(0, &["dictionary", "--format", "json"]).stdout);
+    let [database, words] = ["study.db", "words.json"].map(|name| scratch.path(name).to_string_lossy().into_owned());
+    let needs = "duckdb, duckdb_extension_sqlite_scanner, datasette, pandas, polars";
+    let Some(lines) = peer("tools.py", needs, &[database, words]) else { return };
     let differences: Vec<&Vec<String>> = lines.iter().filter(|line| !line[4].is_empty()).collect();
     assert!(differences.is_empty(), "{differences:#?}");
     for tool in ["duckdb", "pandas", "polars"] {

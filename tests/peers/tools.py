@@ -1,9 +1,10 @@
 """What analysts' tools read from a database, beside what SQLite says: every value and every type.
 
-    tools.py DATABASE
+    tools.py DATABASE WORDS
 
-Every view, and every table that is documented, goes through DuckDB, pandas and polars; Datasette answers filters over HTTP. Printed is a
-line for each object and tool: name, tool, rows, columns, and the first difference, empty where there is none.
+Every view, and every table that is documented, goes through DuckDB, pandas and polars; Datasette answers filters over HTTP. WORDS is what
+`busclimate dictionary --format json` prints. Printed is a line for each object and tool: name, tool, rows, columns, and the first
+difference, empty where there is none.
 """
 
 import csv
@@ -22,36 +23,12 @@ import duckdb_extension_sqlite_scanner
 import pandas
 import polars
 
-TABLES = [
-    "annual_average",
-    "monthly_average",
-    "annual_energy",
-    "limit_share",
-    "energy_class",
-    "unmet_demand",
-    "heat_flow_monthly",
-    "disturbance_histogram",
-    "simulation_annual",
-    "simulation_class",
-    "control_annual",
-    "control_class",
-    "control_outside",
-    "control_trace",
-    "setpoint_profile",
-    "curtain_threshold",
-    "heater_threshold",
-    "excluded_segment",
-    "source_file",
-    "data_quality",
-    "run",
-    "run_stage",
-]
 KINDS = {int: "BIGINT", float: "DOUBLE", str: "VARCHAR"}
 
 
-def names(connection):
-    views = [r[0] for r in connection.execute("SELECT name FROM sqlite_schema WHERE type = 'view' ORDER BY name")]
-    return views + TABLES
+def names(words):
+    """Every table and view that others build on."""
+    return [r["name"] for r in json.loads(pathlib.Path(words).read_text())["relations"] if not r["internal"]]
 
 
 def rows_of(cursor):
@@ -179,11 +156,11 @@ def by_datasette(database, connection):
 
 
 def main():
-    database = sys.argv[1]
+    database, words = sys.argv[1:]
     connection = sqlite3.connect(f"file:{database}?mode=ro", uri=True)
     out = csv.writer(sys.stdout)
     tools = {"duckdb": by_duckdb(database), "pandas": by_pandas(connection), "polars": by_polars(connection)}
-    for name in names(connection):
+    for name in names(words):
         columns, rows = rows_of(connection.execute(f"SELECT * FROM {name}"))
         for tool, read in tools.items():
             try:
