@@ -370,10 +370,32 @@ pub struct CanyonArgs {
     #[arg(long = "street-azimuth-deg", value_name = "A", allow_negative_numbers = true)]
     pub street_azimuths_deg: Vec<f64>,
 
-    /// Height of the walls over the width of a street; may be given several times, each with equal share [default: a
-    /// mixture of 0, 0.5, 1 and 1.5].
+    /// Height of the walls over the width of a street; may be given several times, each with equal share [default:
+    /// those of `--streets`].
     #[arg(long = "height-to-width", value_name = "H")]
     pub heights_to_width: Vec<f64>,
+
+    /// Streets that have a name.
+    #[arg(long, value_enum, default_value_t, conflicts_with = "heights_to_width")]
+    pub streets: Streets,
+}
+
+#[derive(Debug, Clone, Copy, Default, ValueEnum)]
+pub enum Streets {
+    /// 0.22 times as high as wide: the shade of the hour in summer whose solar heat the paper prints.
+    #[default]
+    Calibrated,
+    /// A mixture of 0, 0.5, 1 and 1.5 times as high as wide.
+    Town,
+}
+
+impl From<Streets> for pipeline::Streets {
+    fn from(streets: Streets) -> Self {
+        match streets {
+            Streets::Calibrated => Self::Calibrated,
+            Streets::Town => Self::Town,
+        }
+    }
 }
 
 #[derive(Debug, ClapArgs)]

@@ -76,7 +76,8 @@ fn dispatch(args: &Args, console: &Console) -> Result<Ending, Failure> {
         }
         Command::Canyon(canyon) => {
             let study = open(&canyon.study)?;
-            let (path, kinds) = pipeline::write_canyon(&study, &canyon.street_azimuths_deg, &canyon.heights_to_width)?;
+            let (azimuths_deg, heights) = (&canyon.street_azimuths_deg, &canyon.heights_to_width);
+            let (path, kinds) = pipeline::write_canyon(&study, azimuths_deg, heights, canyon.streets.into())?;
             say(format_args!("{} is written: the shade of {kinds} kinds of street canyons", path.display()))?;
             Ok(Ending::Done)
         }

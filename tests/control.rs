@@ -26,6 +26,7 @@ fn cli_profiles_cover_the_hours_that_they_claim() {
     let run = scratch.expect(0, &["control"]);
     assert!(run.stdout.contains("hp+curtain within PMV ±1, heating: "), "{}", run.stdout);
     assert!(run.stdout.contains("20 files in "), "{}", run.stdout);
+    let mut thresholds = 0;
     for limit in ["0.5", "1"] {
         let setup = file(&scratch, &format!("hp+curtain_pmv_-{limit}_{limit}.toml"));
         let heating = setup["heating"].as_table().expect("a profile");
@@ -55,8 +56,13 @@ fn cli_profiles_cover_the_hours_that_they_claim() {
         let curtains = setup["air_curtain"].as_array().expect("two modes");
         let heating = curtains[0].as_table().expect("a mode");
         assert_eq!(heating["mode"].as_str(), Some("heating"));
-        assert!((number(heating, "on_above_difference_k") - number(heating, "analytic_difference_k")).abs() < 1.5);
+        // Where curtains run in every hour that heats, the optima show no threshold.
+        if heating.contains_key("on_above_difference_k") {
+            thresholds += 1;
+            assert!((number(heating, "on_above_difference_k") - number(heating, "analytic_difference_k")).abs() < 1.5);
+        }
     }
+    assert!(thresholds > 0);
     // Every full degree, and a setpoint that does not fall.
     let csv = scratch.read("setpoints/hp_pmv_-1_1.csv");
     let setpoints: Vec<f64> = csv.lines().skip(1).filter_map(|l| l.split(',').nth(1)?.parse().ok()).collect();

@@ -11,7 +11,7 @@ use cabin::{
 use chrono::{DateTime, TimeDelta, Utc};
 use common::Scratch;
 use ingest::Content;
-use ingest::mission::{MissionOptions, MissionSource, read, span_of_name};
+use ingest::mission::{MissionOptions, MissionSource, RouteChoice, read, span_of_name};
 use serde_json::{Value, json};
 use setpoints::Curve;
 use shading::{ShadowYear, Site};
@@ -107,7 +107,8 @@ fn xval_numpy_a_causal_controller_in_closed_loop_comes_out_the_same() {
     let scratch = Scratch::demo(4);
     let name = summer_mission(&scratch);
     let path = scratch.path(&format!("ztbus/{name}"));
-    let options = MissionOptions { segment_s: 3600, door_open_share: 0.6, keep_partial: false };
+    let options =
+        MissionOptions { segment_s: 3600, door_open_share: 0.6, keep_partial: false, routes: RouteChoice::All };
     let reading = read(&MissionSource::at(&path).unwrap(), &Content::read(&path).unwrap(), &options);
     let hours = reading.segments.len();
     let heating = [(-10.0, 17.0), (10.0, 18.5), (25.0, 21.0)];

@@ -204,3 +204,22 @@ fn cli_a_report_that_somebody_has_changed_is_written_again() {
     scratch.expect(0, &["run"]);
     assert!(report == scratch.report());
 }
+
+#[test]
+fn cli_a_file_that_reports_no_longer_have_goes_unless_somebody_has_changed_it() {
+    let scratch = solved();
+    // As if the report before had had two files more, empty ones.
+    scratch.tamper(
+        "UPDATE stage_record SET stage_key = '', row_check = NULL, result = json_set(result,
+            '$.files[#]', json_array('old.svg', 'af1349b9f5f9a1a6a0404dea36dcc9499bcb25c9adc112b7cc9a93cae41f3262'),
+            '$.files[#]', json_array('own.svg', 'af1349b9f5f9a1a6a0404dea36dcc9499bcb25c9adc112b7cc9a93cae41f3262'))
+         WHERE stage = 'report'",
+    );
+    scratch.write("report/old.svg", "");
+    scratch.write("report/own.svg", "mine");
+    scratch.write("report/notes.txt", "");
+    scratch.expect(0, &["run"]);
+    let names: Vec<String> = scratch.report().into_iter().map(|(name, _)| name).collect();
+    let has = |name: &str| names.iter().any(|n| n == name);
+    assert_eq!(["old.svg", "own.svg", "notes.txt", "report.md"].map(has), [false, true, true, true]);
+}

@@ -322,3 +322,30 @@ fn cli_check_says_all_that_is_wrong_at_once() {
     assert!(check.stderr.contains("these 2 errors"), "{}", check.stderr);
     assert!(!scratch.path("study.db").exists());
 }
+
+#[test]
+fn cli_missions_are_chosen_by_route() {
+    let scratch = Scratch::small(8, "[1.0]", "[1.0]");
+    scratch.expect(0, &["run"]);
+    // The demo's missions are on one route each.
+    let of =
+        |scratch: &Scratch| scratch.query("SELECT coalesce(route, 'none'), count(*) FROM sample GROUP BY 1 ORDER BY 1");
+    let all = of(&scratch);
+    assert!(all.len() > 2, "{all:?}");
+    let (left_out, simulations) = (&all[0], "SELECT count(DISTINCT mission) FROM simulation");
+    let missions = number(&scratch.query(simulations)[0][0]);
+    scratch.edit("study.toml", "segment_s = 3600", &format!("without_routes = [{:?}]\nsegment_s = 3600", left_out[0]));
+    let run = scratch.expect(0, &["run"]);
+    assert_eq!(of(&scratch), all[1..], "{}", run.stdout);
+    assert!(number(&scratch.query(simulations)[0][0]) < missions);
+    let said = scratch.query("SELECT DISTINCT reason FROM excluded_segment WHERE reason LIKE 'mission on%'");
+    assert_eq!(said, [[format!("mission on route {}, which the study leaves out", left_out[0])]]);
+    // Two ways to say the same.
+    let names: Vec<&str> = all[1..].iter().map(|row| row[0].as_str()).collect();
+    scratch.edit("study.toml", &format!("without_routes = [{:?}]", left_out[0]), &format!("routes = {names:?}"));
+    scratch.expect(0, &["run"]);
+    assert_eq!(of(&scratch), all[1..]);
+    scratch.edit("study.toml", "routes = ", "without_routes = [\"1\"]\nroutes = ");
+    let run = scratch.expect(2, &["run"]);
+    assert!(run.stderr.contains("both routes and without_routes; remove one of them"), "{}", run.stderr);
+}

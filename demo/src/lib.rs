@@ -17,7 +17,7 @@ pub use plan::{MissionPlan, PlanError, default_plan, read_meta_data};
 pub use weather::SyntheticWeather;
 
 use rayon::prelude::*;
-use shading::{Site, canyon_year, town_streets};
+use shading::{Site, Streets, canyon_year};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -105,7 +105,7 @@ pub fn write(
         }
     }
     let site = Site::new(LATITUDE_DEG, LONGITUDE_DEG).expect("the demo's place lies on the globe");
-    let shadow = canyon_year(&site, &town_streets()).to_csv();
+    let shadow = canyon_year(&site, &Streets::default().evenly_spread()).to_csv();
     files::write(&folder.join(SHADOW), shadow.as_bytes())?;
     Ok(Summary {
         missions: plans.len() as u64,

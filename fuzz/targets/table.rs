@@ -1,7 +1,7 @@
 //! Tables of telemetry with columns of other names.
 #![no_main]
 
-use ingest::mission::{Door, MissionFormat, MissionOptions, TelemetryMap, Vehicle, discover, read};
+use ingest::mission::{Door, MissionFormat, MissionOptions, RouteChoice, TelemetryMap, Vehicle, discover, read};
 use ingest::{Clock, FileReader};
 use libfuzzer_sys::fuzz_target;
 use std::path::PathBuf;
@@ -33,7 +33,7 @@ fuzz_target!(|bytes: &[u8]| {
         cut_gap_s: 900,
     };
     let Ok(found) = discover(&FOLDER, "a.csv", &MissionFormat::Csv(Arc::new(map)), &[]) else { return };
-    let options = MissionOptions { segment_s: 3600, door_open_share: 0.6, keep_partial: true };
+    let options = MissionOptions { segment_s: 3600, door_open_share: 0.6, keep_partial: true, routes: RouteChoice::All };
     let mut reader = FileReader::default();
     for mission in &found.missions {
         let content = mission.load(&mut reader).expect("the table is still there");

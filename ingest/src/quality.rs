@@ -286,7 +286,7 @@ impl FileRecord {
 }
 
 /// Why a segment gives no sample.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ExclusionReason {
     /// The last part of a mission, shorter than a segment.
     Partial {
@@ -295,6 +295,11 @@ pub enum ExclusionReason {
     },
     /// Too many seconds without telemetry.
     TelemetryGap,
+    /// The study leaves missions on this route out, or on none.
+    Route {
+        /// The route of most seconds of the mission.
+        route: Option<String>,
+    },
     /// The weather record has a gap that is too long to interpolate.
     WeatherGap {
         /// Longest gap that is interpolated, in s.
@@ -309,6 +314,8 @@ impl fmt::Display for ExclusionReason {
         match self {
             Self::Partial { segment_s } => write!(f, "last part of the mission, shorter than {segment_s} s"),
             Self::TelemetryGap => f.write_str("more than 1 % of the seconds have no telemetry"),
+            Self::Route { route: Some(route) } => write!(f, "mission on route {route}, which the study leaves out"),
+            Self::Route { route: None } => f.write_str("mission on no route, which the study leaves out"),
             Self::WeatherGap { max_gap_s } => write!(f, "weather gap longer than {max_gap_s} s"),
             Self::OutsideWeather => f.write_str("outside the weather record"),
         }

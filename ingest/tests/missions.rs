@@ -3,13 +3,14 @@
 #![expect(clippy::unwrap_used, reason = "a test ends where something is not as expected")]
 
 use chrono::{DateTime, Utc};
-use ingest::mission::{MissionFormat, MissionOptions, MissionReading, discover, overlaps, read};
+use ingest::mission::{MissionFormat, MissionOptions, MissionReading, RouteChoice, discover, overlaps, read};
 use ingest::{ExclusionReason, FileReader, FindingKind, IngestError};
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-const OPTIONS: MissionOptions = MissionOptions { segment_s: 3600, door_open_share: 0.6, keep_partial: false };
+const OPTIONS: MissionOptions =
+    MissionOptions { segment_s: 3600, door_open_share: 0.6, keep_partial: false, routes: RouteChoice::All };
 const NAME: &str = "B183_2022-01-10_06-00-00_2022-01-10_08-29-59.csv";
 const START_S: i64 = 1_641_794_400;
 const HEADER: &str = "time_iso,time_unix,itcs_numberOfPassengers,itcs_stopName,status_doorIsOpen,temperature_ambient";

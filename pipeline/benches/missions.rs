@@ -6,7 +6,7 @@
 use divan::counter::ItemsCount;
 use ingest::Clock;
 use ingest::FileReader;
-use ingest::mission::{Door, MissionFormat, MissionOptions, TelemetryMap, Vehicle, discover, read};
+use ingest::mission::{Door, MissionFormat, MissionOptions, RouteChoice, TelemetryMap, Vehicle, discover, read};
 use pipeline::in_order;
 use polars::prelude::{CsvReadOptions, DataType, Field, PlSmallStr, Schema, SerReader};
 use std::fmt::Write as _;
@@ -19,7 +19,8 @@ use std::sync::Arc;
 static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
 
 const COPIES: usize = 100;
-const OPTIONS: MissionOptions = MissionOptions { segment_s: 3600, door_open_share: 0.6, keep_partial: false };
+const OPTIONS: MissionOptions =
+    MissionOptions { segment_s: 3600, door_open_share: 0.6, keep_partial: false, routes: RouteChoice::All };
 
 fn main() {
     divan::main();

@@ -40,6 +40,7 @@ mod show;
 mod simulations;
 mod status;
 mod traces;
+mod uncertainty;
 mod verify;
 
 pub use self::export::{Export, Words, export, words};
@@ -59,6 +60,7 @@ pub use inputs::Inputs;
 pub use plan::{StagePlan, plan};
 pub use progress::{Progress, Quiet, StageEnd, Work};
 pub use run::{Done, Options, Stage, run};
+pub use shading::Streets;
 pub use show::{Point, Shown, show};
 pub use status::{LastRun, LastStage, Status, Summary, status};
 pub use store::SetpointRow;

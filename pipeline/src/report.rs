@@ -1,6 +1,7 @@
 //! The report: rows of the database onto the disk. No input is read.
 
 use cabin::ComfortWindow;
+use ingest::FileKind;
 use report::{ReportFile, StudyReport};
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
@@ -8,6 +9,7 @@ use store::{RecordedStage, SetpointRow, StageRecord, Store};
 use study::Study;
 use study::assumptions::assumptions;
 
+use crate::canyon::shade_in_words;
 use crate::lock::RunLock;
 use crate::record::input_hash;
 use crate::{Inputs, PROGRAM_VERSION, PipelineError, Progress, Work, folder, freshness};
@@ -100,11 +102,21 @@ fn write(study: &Study, store: &mut Store, progress: &dyn Progress) -> Result<Wr
         Err(PipelineError::Write { .. }) => None,
         lock => Some(lock?),
     };
+    let left = left_behind(study, store)?;
+    let ours: Vec<&str> = report::FILES.into_iter().chain(left.iter().map(String::as_str)).collect();
     let bytes: Vec<(&str, &[u8])> = files.iter().map(|file| (file.name, file.bytes.as_slice())).collect();
-    folder::replace(&study.report_dir, &bytes, &report::FILES, &[&study.database, &study.base])
+    folder::replace(&study.report_dir, &bytes, &ours, &[&study.database, &study.base])
         .map_err(|source| PipelineError::Write { path: study.report_dir.clone(), source })?;
     let hashed = |file: &ReportFile| (file.name.to_owned(), blake3::hash(&file.bytes).to_hex().to_string());
     Ok(Written { files: files.iter().map(hashed).collect(), headline: report::headline(&content) })
+}
+
+/// Files of the last report of the study that this version of the program no longer writes, where nobody has changed them since.
+fn left_behind(study: &Study, store: &mut Store) -> Result<Vec<String>, PipelineError> {
+    let Some(record) = store.stage(RecordedStage::Report)? else { return Ok(Vec::new()) };
+    let Ok(written) = serde_json::from_str::<Written>(&record.result) else { return Ok(Vec::new()) };
+    let names = written.files.iter().map(|(name, _)| name.clone());
+    Ok(names.filter(|name| !report::FILES.contains(&name.as_str()) && is_as_written(study, &written, name)).collect())
 }
 
 /// Says where the report is of something else than the inputs as they are now. Inputs that are gone say nothing.
@@ -146,6 +158,9 @@ fn content(study: &Study, store: &mut Store) -> Result<StudyReport, PipelineErro
             clouds.push(store.cloud(&year.point.design, window)?);
         }
     }
+    let files = store.files()?;
+    let shade = files.iter().find(|f| f.kind == FileKind::Shadow && f.accepted);
+    let shade = shade.and_then(|file| shade_in_words(study, &file.blake3));
     Ok(StudyReport {
         name: study.name.clone(),
         note: study.note.clone(),
@@ -155,13 +170,17 @@ fn content(study: &Study, store: &mut Store) -> Result<StudyReport, PipelineErro
         zone: study.zone,
         designs: study.design_rows.clone(),
         annual: store.annual()?,
+        annual_intervals: store.annual_intervals()?,
+        design_intervals: store.design_intervals()?,
+        month_spreads: store.month_spreads()?,
+        left_out: store.left_out()?,
         monthly: store.monthly()?,
         months: store.months()?,
         limit_shares: store.limit_shares()?,
         status: store.status_counts()?,
-        files: store.files()?,
+        files,
         exclusions: store.exclusion_counts()?,
-        assumptions: assumptions(study),
+        assumptions: assumptions(study, shade),
         simulated_years: store.simulated_years()?,
         simulated_classes: store.simulated_classes()?,
         simulation_failures: store.simulation_failures()?,

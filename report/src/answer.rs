@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use crate::numbers::{percent, watts, window};
+use crate::numbers::{percent_within, watts, window, within};
 use crate::study_report::{SHOWN_LIMIT, StudyReport};
 
 /// The limit of a stricter window to compare with ±1.
@@ -12,20 +12,17 @@ const STRICTER: f64 = 0.5;
 pub(crate) fn answer(study: &StudyReport) -> Option<String> {
     let shown = study.shown_window()?;
     let power = |d: &str, w| study.annual_power_w(d, w);
-    let cheapest = study
-        .designs
-        .iter()
-        .filter_map(|d| Some((d.name.as_str(), power(&d.name, shown)?)))
-        .min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let cheapest = study.cheapest(shown)?;
     let mut text = format!(
         "Within PMV {}, the design {} is the cheapest: {} W averaged over the year",
         window(shown),
         cheapest.0,
-        watts(Some(cheapest.1))
+        within(cheapest.1, study.annual_ends(cheapest.0, shown), 0)
     );
     match power("ptc", shown) {
         Some(reference) if cheapest.0 != "ptc" && reference > 0.0 => {
-            let _ = write!(text, ", {} less than ptc.", percent(Some(1.0 - cheapest.1 / reference)));
+            let ends = study.interval(cheapest.0, shown).and_then(|r| r.reduction_vs_ptc);
+            let _ = write!(text, ", {} less than ptc.", percent_within(1.0 - cheapest.1 / reference, ends));
         }
         _ => text.push('.'),
     }

@@ -30,7 +30,7 @@ pub struct ReportFile {
 }
 
 /// The names of all files that a report can have.
-pub const FILES: [&str; 25] = [
+pub const FILES: [&str; 28] = [
     "report.md",
     "aircurtain_setpoint.svg",
     "annual_average.csv",
@@ -44,8 +44,11 @@ pub const FILES: [&str; 25] = [
     "control_pareto.svg",
     "curtain_threshold.csv",
     "data_quality.csv",
+    "design_interval.csv",
+    "left_out.csv",
     "mission_cold.svg",
     "mission_hot.svg",
+    "month_spread.csv",
     "monthly_average.csv",
     "paper_comparison.csv",
     "pareto.svg",

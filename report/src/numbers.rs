@@ -2,6 +2,7 @@
 
 use cabin::ComfortWindow;
 use chrono::{DateTime, SecondsFormat, Utc};
+use store::Ends;
 
 /// `-0.5 … 0.7`, or `±1` for a symmetric window, `0` for neutral.
 pub(crate) fn window(window: ComfortWindow) -> String {
@@ -42,6 +43,29 @@ pub(crate) fn percent(share: Option<f64>) -> String {
     share.map_or_else(|| "–".to_owned(), |s| format!("{:.1} %", 100.0 * s + 0.0))
 }
 
+/// A number with as many digits as its interval lets stand, at most so many decimals, and its interval: the last digit is the
+/// first one of half its width.
+pub(crate) fn within(value: f64, ends: Ends, decimals: i32) -> String {
+    let Some([low, high]) = ends.filter(|[low, high]| high > low) else { return rounded(value, -decimals) };
+    let place = (((high - low) / 2.0).log10().floor() as i32).max(-decimals);
+    format!("{} ({} … {})", rounded(value, place), rounded(low, place), rounded(high, place))
+}
+
+/// A share with its interval, in percent with at most one decimal.
+pub(crate) fn percent_within(share: f64, ends: Ends) -> String {
+    let of = ends.map(|ends| ends.map(|end| 100.0 * end));
+    let text = within(100.0 * share, of, 1);
+    text.split_once(" (").map_or_else(|| format!("{text} %"), |(value, rest)| format!("{value} % ({rest}"))
+}
+
+/// To a power of ten.
+fn rounded(value: f64, place: i32) -> String {
+    let decimals = usize::try_from(-place).unwrap_or(0);
+    let unit = 10_f64.powi(place.max(0));
+    // Adding 0 turns -0 into 0.
+    format!("{:.decimals$}", if place > 0 { (value / unit).round() * unit } else { value } + 0.0).replace('-', "−")
+}
+
 /// With a sign and so many decimals; nothing has no sign.
 pub(crate) fn signed(value: f64, decimals: usize) -> String {
     let text = format!("{:.decimals$}", value.abs());
@@ -74,4 +98,21 @@ pub(crate) fn month(month: u8) -> &'static str {
         "December",
     ];
     NAMES.get(usize::from(month).wrapping_sub(1)).copied().unwrap_or("?")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn prop_an_interval_leaves_the_digits_that_stand() {
+        // A four-digit number within ±15 % has two digits.
+        assert_eq!(within(1234.0, Some([1050.0, 1420.0]), 0), "1200 (1100 … 1400)");
+        assert_eq!(within(1314.9, Some([1243.6, 1391.5]), 0), "1310 (1240 … 1390)");
+        assert_eq!(within(59.0, Some([58.5, 59.4]), 1), "59.0 (58.5 … 59.4)");
+        assert_eq!(within(7.2, Some([3.1, 11.0]), 1), "7 (3 … 11)");
+        assert_eq!(within(0.0, Some([0.0, 0.0]), 1), "0.0");
+        assert_eq!(within(-8.562, Some([-8.785, -8.333]), 1), "−8.6 (−8.8 … −8.3)");
+        assert_eq!(within(1234.6, None, 0), "1235");
+    }
 }

@@ -4,9 +4,9 @@ use cabin::ComfortWindow;
 use chrono_tz::Tz;
 use ingest::FileRecord;
 use store::{
-    AnnualRow, Cloud, ControlClass, ControlPoint, ControlTrace, ControlYear, DesignRow, ExclusionCount, LimitShare,
-    MissionTrace, MonthRow, MonthlyRow, Outside, SetpointRow, SimulatedClass, SimulatedYear, SimulationFailure,
-    StatusCounts, TraceWindow,
+    AnnualInterval, AnnualRow, Cloud, ControlClass, ControlPoint, ControlTrace, ControlYear, DesignInterval, DesignRow,
+    Ends, ExclusionCount, LeftOutRow, LimitShare, MissionTrace, MonthRow, MonthlyRow, Outside, SetpointRow,
+    SimulatedClass, SimulatedYear, SimulationFailure, SpreadRow, StatusCounts, TraceWindow,
 };
 use study::assumptions::Assumption;
 
@@ -32,6 +32,14 @@ pub struct StudyReport {
     pub designs: Vec<DesignRow>,
     /// Annual means by design and window.
     pub annual: Vec<AnnualRow>,
+    /// Intervals of 90 % of the annual means.
+    pub annual_intervals: Vec<AnnualInterval>,
+    /// Of what each design saves against each other one.
+    pub design_intervals: Vec<DesignInterval>,
+    /// How sure each month is.
+    pub month_spreads: Vec<SpreadRow>,
+    /// The year without one route, year or month.
+    pub left_out: Vec<LeftOutRow>,
     /// Monthly means by design, window and month.
     pub monthly: Vec<MonthlyRow>,
     /// Months that have samples.
@@ -106,6 +114,27 @@ impl StudyReport {
 
     pub(crate) fn annual_power_w(&self, design: &str, window: ComfortWindow) -> Option<f64> {
         self.annual_row(design, window)?.hvac_power_w
+    }
+
+    /// Whether any interval is known.
+    pub(crate) fn has_intervals(&self) -> bool {
+        self.annual_intervals.iter().any(|r| r.hvac_power_w.is_some())
+    }
+
+    /// The interval of an annual mean in W.
+    pub(crate) fn annual_ends(&self, design: &str, window: ComfortWindow) -> Ends {
+        self.interval(design, window)?.hvac_power_w
+    }
+
+    /// The intervals of a design and window.
+    pub(crate) fn interval(&self, design: &str, window: ComfortWindow) -> Option<&AnnualInterval> {
+        self.annual_intervals.iter().find(|r| r.design == design && r.window == window)
+    }
+
+    /// The cheapest design in a window, with its power in W.
+    pub(crate) fn cheapest(&self, window: ComfortWindow) -> Option<(&str, f64)> {
+        let of = self.designs.iter().filter_map(|d| Some((d.name.as_str(), self.annual_power_w(&d.name, window)?)));
+        of.min_by(|a, b| a.1.total_cmp(&b.1))
     }
 
     pub(crate) fn annual_row(&self, design: &str, window: ComfortWindow) -> Option<&AnnualRow> {

@@ -16,22 +16,72 @@ pub struct Street {
     pub share: f64,
 }
 
-/// Directions of the streets of [`town_streets`], evenly spread over half a turn.
+/// Directions of named streets, evenly spread over half a turn.
 const DIRECTIONS: u32 = 8;
-/// Their height-to-width ratios with the share of each; a fifth of the way is open.
+/// Height over width at which evenly spread streets have the shade of the one hour whose solar heat the paper prints: 24 July
+/// 2019, 15:50 to 16:50 in Zürich, with a shadow fraction of 0.12 to 0.16 (docs/findings.md).
+const CALIBRATED: [(f64, f64); 1] = [(0.22, 1.0)];
+/// Height-to-width ratios of a town with the share of each; a fifth of the way is open.
 const TOWN: [(f64, f64); 4] = [(0.0, 0.20), (0.5, 0.20), (1.0, 0.35), (1.5, 0.25)];
+
+/// Streets that have a name.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Streets {
+    /// Wide ones whose shade is that of the hour that the paper shows.
+    #[default]
+    Calibrated,
+    /// A mixture of narrow and wide ones, as an assumption and no survey: three times as much shade in that hour.
+    Town,
+}
+
+impl Streets {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::Calibrated, Self::Town];
+
+    /// Heights over widths, each with its share.
+    #[must_use]
+    pub fn kinds(self) -> &'static [(f64, f64)] {
+        match self {
+            Self::Calibrated => &CALIBRATED,
+            Self::Town => &TOWN,
+        }
+    }
+
+    /// The streets in evenly spread directions.
+    #[must_use]
+    pub fn evenly_spread(self) -> Vec<Street> {
+        in_directions(&even_azimuths_rad(), self.kinds())
+    }
+
+    /// What they are, in words.
+    #[must_use]
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Calibrated => {
+                "street canyons 0.22 times as high as wide, in all directions: the shade that the solar heat means which the \
+                 paper prints for 24 July 2019, 15:50"
+            }
+            Self::Town => {
+                "street canyons of a town, 0 to 1.5 times as high as wide, in all directions: three times the shade that the \
+                 paper's hour of 24 July 2019, 15:50 has"
+            }
+        }
+    }
+}
+
+/// Streets of each kind, a height over width with its share, in each direction.
+#[must_use]
+pub fn in_directions(azimuths_rad: &[f64], kinds: &[(f64, f64)]) -> Vec<Street> {
+    let street = |&azimuth_rad: &f64| {
+        kinds.iter().map(move |&(height_to_width, share)| Street { azimuth_rad, height_to_width, share })
+    };
+    azimuths_rad.iter().flat_map(street).collect()
+}
 
 /// Evenly spread directions, in rad from north.
 #[must_use]
 pub fn even_azimuths_rad() -> Vec<f64> {
     (0..DIRECTIONS).map(|i| PI * f64::from(i) / f64::from(DIRECTIONS)).collect()
-}
-
-/// The streets of a town of middle size: evenly spread directions, narrow and wide ones. An assumption, not a survey.
-#[must_use]
-pub fn town_streets() -> Vec<Street> {
-    let kind = |azimuth_rad| TOWN.map(|(height_to_width, share)| Street { azimuth_rad, height_to_width, share });
-    even_azimuths_rad().into_iter().flat_map(kind).collect()
 }
 
 /// The mean shadow fraction of streets at every full hour of a year; at least one street with a share above 0.

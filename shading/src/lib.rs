@@ -9,6 +9,6 @@ mod shadow;
 mod sun;
 
 pub use calendar::hour_of_year;
-pub use canyon::{Street, canyon_shadow_fraction, canyon_year, even_azimuths_rad, town_streets};
+pub use canyon::{Street, Streets, canyon_shadow_fraction, canyon_year, even_azimuths_rad, in_directions};
 pub use shadow::{ShadowError, ShadowYear};
 pub use sun::{Site, SiteError, SunPosition};

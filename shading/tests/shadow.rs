@@ -2,7 +2,7 @@
 
 use chrono::{DateTime, TimeDelta, TimeZone, Utc};
 use proptest::prelude::*;
-use shading::{ShadowError, ShadowYear, SunPosition, canyon_shadow_fraction};
+use shading::{ShadowError, ShadowYear, Site, Streets, SunPosition, canyon_shadow_fraction, canyon_year};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
 use std::fmt::Write as _;
 
@@ -99,4 +99,16 @@ fn prop_bad_shadow_files_name_line_and_remedy() {
     let missing = bad("2023-01-01T02:00:00+00:00,0\n", "").to_string();
     assert!(missing.starts_with("1 of 8760 hours are missing, the first is 01-01 02:00"), "{missing}");
     assert!(ShadowYear::read("time_utc;shadow_fraction\n".as_bytes()).unwrap_err().to_string().contains("commas"));
+}
+
+/// The solar flows that the paper prints for this hour (figure `single-scenario-hot`: 1.0, 2.4 and 7.1 kW) mean a shadow fraction
+/// of 0.12 to 0.16 with the weather of that hour.
+#[test]
+fn paper_the_default_streets_have_the_shade_of_the_printed_hour() {
+    let site = Site::new(47.3779, 8.5657).unwrap();
+    let start = Utc.with_ymd_and_hms(2019, 7, 24, 13, 50, 0).unwrap();
+    let of = |streets: Streets| canyon_year(&site, &streets.evenly_spread()).mean(start, start + TimeDelta::hours(1));
+    let (calibrated, town) = (of(Streets::default()), of(Streets::Town));
+    assert!((0.12..=0.16).contains(&calibrated), "{calibrated}");
+    assert!((0.45..=0.49).contains(&town), "{town}");
 }

@@ -39,7 +39,7 @@ const SIMULATED: Table = ("simulated_mission", &["source_file_id", "design_id", 
 const CONTROLLED: Table = ("controlled_mission", &["source_file_id", "design_id", "window_id", "controller"]);
 const OPTIMA: Table = ("optimum_point", &["sample_id", "design_id", "window_id"]);
 /// Tables of averages, with their keys.
-const AVERAGES: [(&str, &str); 23] = [
+const AVERAGES: [(&str, &str); 29] = [
     ("simulation_month", "design_id, window_id, controller, month"),
     ("simulation_class_month", "design_id, window_id, class_order, month"),
     ("monthly_average", "design, pmv_min, pmv_max, month"),
@@ -54,6 +54,12 @@ const AVERAGES: [(&str, &str); 23] = [
     ("energy_class", "design, pmv_min, pmv_max, sorted_by, class"),
     ("annual_energy", "design, pmv_min, pmv_max"),
     ("disturbance_histogram", "quantity, bin_from"),
+    ("day_month", "month"),
+    ("day_sum", "month, design_id, window_id"),
+    ("annual_interval", "design, pmv_min, pmv_max"),
+    ("design_interval", "design, other_design, pmv_min, pmv_max"),
+    ("month_spread", "design, pmv_min, pmv_max, month"),
+    ("left_out", "design, pmv_min, pmv_max, kind, name"),
     ("simulation_annual", "design, pmv_min, pmv_max, controller"),
     ("simulation_class", "design, pmv_min, pmv_max, class_order"),
     ("setpoint_profile", "design, pmv_min, pmv_max, mode"),

@@ -4,8 +4,8 @@ use cabin::HeatFlows;
 use sqlx::Row;
 use sqlx::sqlite::SqliteConnection;
 
-use crate::row::Insert;
-use crate::{Store, StoreError, StoredGrid};
+use crate::row::{Insert, pack, unpack};
+use crate::{Store, StoreError, StoredGrid, Uncertainty};
 
 /// What samples have in common.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
@@ -125,6 +125,8 @@ pub struct Energy {
     pub classes: Vec<ClassYear>,
     /// The disturbances.
     pub bins: Vec<Bin>,
+    /// How sure all that is.
+    pub uncertainty: Uncertainty,
 }
 
 const SUMS: usize = 6;
@@ -170,7 +172,8 @@ impl Store {
                 for r in sqlx::query(sql).bind(month).fetch_all(&mut *c).await? {
                     let (design, window) =
                         (grid.design(r.try_get("design_id")?)?, grid.window(r.try_get("window_id")?)?);
-                    cells[design * grid.windows.len() + window] = unpack(r.try_get("sums")?);
+                    cells[design * grid.windows.len() + window] =
+                        unpack::<SUMS>(r.try_get("sums")?).into_iter().map(ClassSum::of).collect();
                 }
                 cells.iter_mut().for_each(|cell| cell.resize(classes.len(), ClassSum::default()));
                 all.push(MonthSums { month, classes, cells });
@@ -178,17 +181,6 @@ impl Store {
             Ok(all)
         })
     }
-}
-
-fn pack(sums: &[ClassSum]) -> Vec<u8> {
-    sums.iter().flat_map(ClassSum::values).flat_map(f64::to_le_bytes).collect()
-}
-
-fn unpack(bytes: &[u8]) -> Vec<ClassSum> {
-    let (values, _) = bytes.as_chunks::<8>();
-    let values: Vec<f64> = values.iter().map(|b| f64::from_le_bytes(*b)).collect();
-    let (sums, _) = values.as_chunks::<SUMS>();
-    sums.iter().map(|sum| ClassSum::of(*sum)).collect()
 }
 
 /// Replaces the year, and of the months those that have changed.
@@ -263,7 +255,7 @@ async fn put_month(c: &mut SqliteConnection, grid: &StoredGrid, month: &MonthSum
             .set("month", month.month)?
             .set("design_id", grid.design_ids[design])?
             .set("window_id", grid.window_ids[window])?
-            .set("sums", pack(cell))?;
+            .set("sums", pack(cell.iter().flat_map(ClassSum::values)))?;
         row.execute(&mut *c).await?;
     }
     Ok(())

@@ -28,6 +28,7 @@ mod setpoints;
 mod simulations;
 mod stages;
 mod traces;
+mod uncertainty;
 mod verification;
 mod views;
 
@@ -52,5 +53,9 @@ pub use runs::{Counts, RunEnd, RunRow, RunStage};
 pub use simulations::{SimulatedClass, SimulatedYear, SimulationFailure, SimulationId, SimulationRow};
 pub use stages::{RecordedStage, SettingRow, StageRecord};
 pub use traces::{MissionTrace, TraceRow, TraceWindow};
+pub use uncertainty::{
+    AnnualEnds, AnnualInterval, DaySum, DesignInterval, Ends, LeftOut, LeftOutRow, MonthDays, MonthSpread, PairEnds,
+    SpreadRow, Uncertainty,
+};
 pub use verification::{CheckRow, VerificationRow};
 pub use views::{AnnualRow, ExclusionCount, LimitShare, MonthRow, MonthlyRow, OptimumRow};

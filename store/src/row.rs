@@ -73,6 +73,18 @@ pub(crate) fn insert_sql(verb: &str, table: &str, columns: &[&str], rows: usize)
     format!("{verb} INTO {table} ({}) VALUES {}", columns.join(","), vec![row; rows].join(","))
 }
 
+/// Numbers as bytes, little endian.
+pub(crate) fn pack(values: impl Iterator<Item = f64>) -> Vec<u8> {
+    values.flat_map(f64::to_le_bytes).collect()
+}
+
+/// The numbers of [`pack`], so many at a time.
+pub(crate) fn unpack<const N: usize>(bytes: &[u8]) -> Vec<[f64; N]> {
+    let (values, _) = bytes.as_chunks::<8>();
+    let values: Vec<f64> = values.iter().map(|b| f64::from_le_bytes(*b)).collect();
+    values.as_chunks::<N>().0.to_vec()
+}
+
 /// A count, which SQLite keeps as a signed number.
 pub(crate) fn count(row: &SqliteRow, column: &str) -> Result<u64, sqlx::Error> {
     Ok(row.try_get::<i64, _>(column)?.cast_unsigned())

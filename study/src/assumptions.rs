@@ -19,9 +19,9 @@ pub struct Assumption {
     pub substitute: bool,
 }
 
-/// All assumptions of a study, in the order of the report.
+/// All assumptions of a study, in the order of the report; `shade` says what the shadow file is, where it is known.
 #[must_use]
-pub fn assumptions(study: &Study) -> Vec<Assumption> {
+pub fn assumptions(study: &Study, shade: Option<&str>) -> Vec<Assumption> {
     let mut list = Vec::new();
     let mut add = |what: &str, value: String, source: &str, substitute: bool| {
         let item = Assumption { what: what.to_owned(), value, source: source.to_owned(), substitute };
@@ -83,7 +83,7 @@ pub fn assumptions(study: &Study) -> Vec<Assumption> {
     add("irradiance", split.to_owned(), "Erbs et al. 1982, doi 10.1016/0038-092X(82)90302-4", false);
     add(
         "shadow fractions",
-        study.shadow_path.clone(),
+        shade.map_or_else(|| study.shadow_path.clone(), |words| format!("{}: {words}", study.shadow_path)),
         "the study's own file; the paper computes them from a city model that is not published",
         true,
     );

@@ -99,6 +99,10 @@ pub struct Missions {
     pub cut_gap_s: Option<u32>,
     #[serde(default)]
     pub buses: Vec<u32>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub routes: Vec<String>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub without_routes: Vec<String>,
     #[serde(default = "default_segment_s")]
     pub segment_s: u32,
     #[serde(default = "default_door_open_share")]

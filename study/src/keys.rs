@@ -1,6 +1,7 @@
 //! Keys: what a stored thing was made from, as BLAKE3 hashes that do not depend on place, time or layout of a file.
 
 use cabin::{ComfortWindow, Vehicle};
+use ingest::mission::RouteChoice;
 use simulate::SIMULATION_VERSION;
 use solve::Method;
 use std::collections::BTreeMap;
@@ -62,14 +63,20 @@ pub fn surroundings_key(study: &Study, blake3: &str) -> String {
 /// A part of a key: its name as in the study file, and its value.
 type Setting = (&'static str, String);
 
-fn mission_settings(study: &Study) -> [Setting; 4] {
+fn mission_settings(study: &Study) -> Vec<Setting> {
     let options = &study.missions;
-    [
+    let mut settings = vec![
         ("missions.format", format!("{:?}", study.mission_format)),
         ("missions.segment_s", options.segment_s.to_string()),
         ("missions.door_open_share", options.door_open_share.to_string()),
         ("missions.keep_partial", options.keep_partial.to_string()),
-    ]
+    ];
+    match &options.routes {
+        RouteChoice::All => {}
+        RouteChoice::Only(routes) => settings.push(("missions.routes", format!("{routes:?}"))),
+        RouteChoice::Without(routes) => settings.push(("missions.without_routes", format!("{routes:?}"))),
+    }
+    settings
 }
 
 fn surroundings_settings(study: &Study) -> [Setting; 6] {

@@ -1,7 +1,7 @@
 //! From what was typed to what is meant: names looked up, ranges checked, lists expanded.
 
 use cabin::{ComfortWindow, Cop, Design, Devices, Heating, named_cooling_cops, named_heating_cops};
-use ingest::mission::{Door, MissionFormat, MissionOptions, TelemetryMap, Vehicle};
+use ingest::mission::{Door, MissionFormat, MissionOptions, RouteChoice, TelemetryMap, Vehicle};
 use ingest::weather::{Clock, ColumnMap, IrradianceUnit, TemperatureUnit, TimeLabel, WeatherFormat};
 use setpoints::published;
 use solve::{Grid, Method};
@@ -26,7 +26,22 @@ pub(crate) fn mission_options(missions: &file::Missions) -> Result<MissionOption
         // A share of the doors is one of all doors.
         door_open_share: if missions.door_share_column.is_some() { 1.0 } else { missions.door_open_share },
         keep_partial: missions.keep_partial,
+        routes: route_choice(missions)?,
     })
+}
+
+fn route_choice(missions: &file::Missions) -> Result<RouteChoice, String> {
+    // The order in which routes are listed, and how often, says nothing.
+    let sorted = |routes: &[String]| {
+        let routes: std::collections::BTreeSet<&String> = routes.iter().collect();
+        routes.into_iter().cloned().collect::<Vec<_>>()
+    };
+    match (missions.routes.as_slice(), missions.without_routes.as_slice()) {
+        ([], []) => Ok(RouteChoice::All),
+        (only, []) => Ok(RouteChoice::Only(sorted(only))),
+        ([], without) => Ok(RouteChoice::Without(sorted(without))),
+        _ => Err("[missions] has both routes and without_routes; remove one of them".to_owned()),
+    }
 }
 
 /// How mission files look.

@@ -2,6 +2,7 @@
 
 #![expect(clippy::print_stdout, reason = "a test says why it is skipped")]
 
+use std::path::PathBuf;
 use std::process::Command;
 
 /// The lines that a script of `tests/peers/` prints, in fields; `None` where Python has not the package that it needs, which is
@@ -19,7 +20,10 @@ pub fn peer(script: &str, package: &str, arguments: &[String]) -> Option<Vec<Vec
         );
         return None;
     }
-    let path = format!("{}/tests/peers/{script}", concat!(env!("CARGO_MANIFEST_DIR"), "/.."));
+    // Of the package that is tested, not of the place where this was compiled: checkouts may share what they build.
+    let package = std::env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from).expect("cargo runs the tests");
+    let mut above = package.ancestors().map(|folder| folder.join("tests/peers").join(script));
+    let path = above.find(|path| path.exists()).expect("scripts lie in tests/peers");
     let output = Command::new(&python).arg(path).args(arguments).output().expect("python has just run");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let text = String::from_utf8(output.stdout).expect("the scripts print ASCII");

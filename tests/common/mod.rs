@@ -15,7 +15,7 @@ use store::Store;
 use tempfile::TempDir;
 
 /// All that a database says of a study, but for when and by which run.
-pub const CONTENT: [&str; 30] = [
+pub const CONTENT: [&str; 36] = [
     "SELECT * FROM sample",
     "SELECT * FROM optimum",
     "SELECT design, pmv_min, pmv_max, month, hvac_power_w, heating_power_w, cooling_power_w, sample_count, unsolved_count,
@@ -58,6 +58,18 @@ pub const CONTENT: [&str; 30] = [
     "SELECT quantity, bin_from, bin_to, sample_count, weight FROM disturbance_histogram",
     "SELECT * FROM heat_flow",
     "SELECT month, classes FROM class_month",
+    "SELECT month, days FROM day_month",
+    "SELECT month, quote(sums) FROM day_sum JOIN hvac_design USING (design_id) JOIN comfort_window USING (window_id)
+        ORDER BY month, name, pmv_min, pmv_max",
+    "SELECT design, pmv_min, pmv_max, hvac_power_w, hvac_power_low_w, hvac_power_high_w, heating_power_low_w,
+        heating_power_high_w, cooling_power_low_w, cooling_power_high_w, kwh_per_km_low, kwh_per_km_high,
+        reduction_vs_ptc_low, reduction_vs_ptc_high, day_count, single_day_month_count FROM annual_interval",
+    "SELECT design, other_design, pmv_min, pmv_max, other_takes_more_w, other_takes_more_low_w, other_takes_more_high_w,
+        saving, saving_low, saving_high FROM design_interval",
+    "SELECT design, pmv_min, pmv_max, month, sample_count, day_count, standard_error_w, effective_sample_count
+        FROM month_spread",
+    "SELECT design, pmv_min, pmv_max, kind, name, sample_count, month_count, hvac_power_w, relative_change,
+        reduction_vs_ptc FROM left_out",
     "SELECT * FROM excluded_segment",
     "SELECT path, kind, blake3, bytes, rows, first_utc, last_utc, outcome, reading_key FROM source_file",
     "SELECT f.path, q.kind, q.count, q.line, q.column_name, q.message, q.position

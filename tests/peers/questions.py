@@ -88,6 +88,82 @@ def cost_of_comfort(raw):
     return rows(g)
 
 
+class Near:
+    """A number that was drawn by others: as good as equal within a tolerance."""
+
+    def __init__(self, value, tolerance):
+        self.value, self.tolerance = value, tolerance
+
+    def __eq__(self, other):
+        return isinstance(other, float) and abs(other - self.value) <= self.tolerance
+
+    def __repr__(self):
+        return ""
+
+
+def with_days(raw):
+    """Solved samples with the local day on which their mission begins."""
+    s = raw.solved
+    start = pandas.to_datetime(s.start_utc, utc=True) - pandas.to_timedelta(s.segment * s.duration_s, unit="s")
+    local = start.dt.tz_convert("Europe/Zurich")
+    return s.assign(day=local.dt.date, day_month=local.dt.month, day_year=local.dt.year.astype(str))
+
+
+def how_sure(raw):
+    s = with_days(raw)
+    days = s[["day", "day_month"]].drop_duplicates().sort_values("day").reset_index(drop=True)
+    dice, draws = numpy.random.default_rng(1), 8000
+    counts = numpy.zeros((draws, len(days)))
+    for _, of_month in days.groupby("day_month"):
+        n = len(of_month)
+        assert n > 1
+        counts[:, of_month.index] = dice.multinomial(n - 1, [1 / n] * n, size=draws)
+    drawn = {}
+    for point, of_point in s.groupby(POINT):
+        total, weight = numpy.zeros(draws), numpy.zeros(draws)
+        for month, of_month in of_point.groupby("month"):
+            g = of_month.groupby("day").power.agg(["sum", "size"]).reindex(days.day, fill_value=0)
+            power, samples = counts @ g["sum"].values, counts @ g["size"].values
+            total += numpy.where(samples > 0, DAYS[month] * power / numpy.maximum(samples, 1), 0.0)
+            weight += numpy.where(samples > 0, DAYS[month], 0.0)
+        drawn[point] = total / weight
+    power = {(r.design, r.pmv_limit): r.power for r in sums(raw.solved, POINT).itertuples()}
+
+    def ends(values):
+        # An end that both draw lies within a fifth of the half-width: some four standard errors of the two of them.
+        low, high = numpy.quantile(values, [0.05, 0.95])
+        tolerance = max(0.1 * (high - low), 1e-12)
+        return Near(low, tolerance), Near(high, tolerance)
+
+    out = []
+    for limit in sorted({limit for _, limit in power}):
+        low, high = ends(drawn["hp+curtain", limit])
+        for other in {design for design, _ in power} - {"hp+curtain"}:
+            own = ("hp+curtain", limit)
+            saving_low, saving_high = ends(1 - drawn[own] / drawn[other, limit])
+            saving = 1 - power[own] / power[other, limit]
+            out.append((limit, low, power[own], high, other, saving_low, saving, saving_high))
+    return out
+
+
+def one_winter(raw):
+    s = with_days(raw)
+    s = s[s.pmv_limit == 1.0].assign(route=s.route.fillna("none"), month_name=s.month.map("{:02d}".format))
+
+    def mean(frame, design):
+        g = frame[frame.design == design].groupby("month").power.mean()
+        return (g * DAYS[g.index]).sum() / DAYS[g.index].sum()
+
+    whole, out = mean(s, "hp"), []
+    for kind, column in {"route": "route", "year": "day_year", "month": "month_name"}.items():
+        for name in s[column].unique():
+            rest = s[s[column] != name]
+            if len(rest):
+                hp, ptc = mean(rest, "hp"), mean(rest, "ptc")
+                out.append((kind, name, int((rest.design == "hp").sum()), hp, hp / whole - 1, 1 - hp / ptc))
+    return out
+
+
 def energy_of_a_bus(raw):
     segments = raw.table("mission_segment")
     months = (segments.bus.astype(str) + segments.start_utc.str[:7]).nunique()
@@ -267,7 +343,7 @@ def disturbances(raw):
 
 def plain(value):
     value = value.item() if hasattr(value, "item") else value
-    return None if value is None or value != value else value
+    return None if value is None or (value != value and not isinstance(value, Near)) else value
 
 
 def place(row):

@@ -1,6 +1,7 @@
 //! Missions: where they are found, and what their telemetry says of each segment. ZTBus has a file for each; the tables of
 //! other operators (`table`) have one or many.
 
+mod choice;
 mod discover;
 mod rows;
 mod table;
@@ -13,6 +14,7 @@ use crate::telemetry::{Table, Telemetry};
 use crate::{Content, ExcludedSegment, ExclusionReason, FileKind, FileRecord, Finding, FindingKind};
 use rows::{Reader, Routes, Rules};
 
+pub use choice::{NO_ROUTE, RouteChoice};
 pub use discover::{Discovery, MissionFormat, MissionSource, discover, mission_name, overlaps, span_of_name};
 pub use table::{Door, TelemetryMap, Vehicle};
 
@@ -20,7 +22,7 @@ pub use table::{Door, TelemetryMap, Vehicle};
 const MAX_MISSING_SHARE: f64 = 0.01;
 
 /// How missions become segments.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct MissionOptions {
     /// Length of a segment in s, counted from the start of each mission; 3600 in the paper.
     pub segment_s: u32,
@@ -28,6 +30,8 @@ pub struct MissionOptions {
     pub door_open_share: f64,
     /// Whether a last part that is shorter than a segment makes a segment of its own.
     pub keep_partial: bool,
+    /// Whose missions make samples.
+    pub routes: RouteChoice,
 }
 
 /// What the telemetry says of a part of a mission.
@@ -155,12 +159,16 @@ fn segments(
     routes: &Routes<'_>,
 ) -> (Vec<Segment>, Vec<ExcludedSegment>) {
     let (mut kept, mut excluded) = (Vec::new(), Vec::new());
+    let route = routes.of_mission();
+    let left_out = !options.routes.takes(route.as_deref());
     for (number, sums) in sums.iter().enumerate() {
         let start_s = clock.start_s + number as i64 * clock.segment_s;
         let duration_s = clock.segment_s.min(clock.end_s - start_s);
         let start = source.start + TimeDelta::seconds(start_s - clock.start_s);
         let missing = (duration_s - sums.observed_s) as f64;
-        let reason = if duration_s < clock.segment_s && !options.keep_partial {
+        let reason = if left_out {
+            Some(ExclusionReason::Route { route: route.clone() })
+        } else if duration_s < clock.segment_s && !options.keep_partial {
             Some(ExclusionReason::Partial { segment_s: options.segment_s })
         } else if missing > MAX_MISSING_SHARE * duration_s as f64 {
             Some(ExclusionReason::TelemetryGap)

@@ -94,8 +94,17 @@ impl<'b> Routes<'b> {
 
     /// The route of most seconds of a segment, the first of equals; `None` where no second has one.
     pub fn of(&self, segment: usize) -> Option<String> {
+        self.most(|s| s == segment)
+    }
+
+    /// The same of the whole mission.
+    pub fn of_mission(&self) -> Option<String> {
+        self.most(|_| true)
+    }
+
+    fn most(&self, wanted: impl Fn(usize) -> bool) -> Option<String> {
         let mut seconds: Vec<(&[u8], u64)> = Vec::new();
-        for (_, route, count) in self.runs.iter().filter(|(s, route, _)| *s == segment && !route.is_empty()) {
+        for (_, route, count) in self.runs.iter().filter(|(s, route, _)| wanted(*s) && !route.is_empty()) {
             match seconds.iter_mut().find(|(same, _)| same == route) {
                 Some((_, sum)) => *sum += count,
                 None => seconds.push((route, *count)),

@@ -17,6 +17,7 @@ use study::Study;
 
 use self::classes::Classes;
 use self::flows::Flows;
+use crate::uncertainty::{DaysOfMonth, day, uncertainty};
 use crate::{PipelineError, Progress};
 
 /// Samples whose optima are read at once.
@@ -53,6 +54,7 @@ pub(crate) fn energy(
     let points = study.grid.points();
     let mut classes: BTreeMap<u8, Classes> = BTreeMap::new();
     let mut flows: BTreeMap<u8, Flows> = BTreeMap::new();
+    let mut days: BTreeMap<u8, DaysOfMonth> = BTreeMap::new();
     let views = PassengerViews::new(&study.vehicle);
     let windows = study.grid.windows().len();
     let limits_w = power_limits_w(study);
@@ -71,10 +73,13 @@ pub(crate) fn energy(
             let cabin = Cabin::new(&study.vehicle, &views, &sample.disturbances);
             let mut sums = classes.entry(sample.month).or_insert_with(|| Classes::new(points)).sample(sample);
             let flows = flows.entry(sample.month).or_insert_with(|| Flows::new(points));
+            let days = days.entry(sample.month).or_insert_with(|| DaysOfMonth::new(points));
+            let day = days.place(day(sample, study.zone));
             for row in of_sample {
                 if let Some(o) = row.outcome.as_ref().and_then(|outcome| outcome.operation()) {
                     let point = row.design * windows + row.window;
                     sums.add(point, o);
+                    days.add(point, day, sample, o);
                     flows.add(point, &cabin, o, limits_w[row.design]);
                 }
             }
@@ -88,5 +93,8 @@ pub(crate) fn energy(
     year.sort_by_key(|m| m.month);
     let classes = year::classes(&year, &months, windows);
     let bins = bins::bins(&all, &months);
-    Ok(Energy { sums, flows, classes, bins })
+    let days = days.into_iter().map(|(month, days)| days.finish(month)).collect();
+    let ptc = study.design_rows.iter().position(|row| row.name == "ptc");
+    let uncertainty = uncertainty(days, &store.month_days(grid)?, &year, [points, windows], ptc);
+    Ok(Energy { sums, flows, classes, bins, uncertainty })
 }

@@ -1,24 +1,40 @@
 //! Annual mean power by design and window.
 
+use store::AnnualRow;
+
 use super::weights_note;
 use crate::StudyReport;
-use crate::document::{Block, DataTable, Section, Table};
-use crate::numbers::{optional, text, watts, window};
+use crate::document::{Block, DataTable, Section, Span, Table};
+use crate::numbers::{optional, text, watts, window, within};
 
 pub(super) fn section(study: &StudyReport) -> Section {
     let designs = study.design_names();
     let row = |w| {
-        let cells = designs.iter().map(|d| watts(study.annual_power_w(d, w)));
+        let cell = |d: &&str| {
+            let power_w = study.annual_power_w(d, w);
+            power_w.map_or_else(|| watts(None), |power_w| within(power_w, study.annual_ends(d, w), 0))
+        };
+        let cells = designs.iter().map(cell);
         [window(w)].into_iter().chain(cells).collect()
     };
     let rows = study.windows().into_iter().map(row).collect();
     Section { tables: vec![data(study)], ..Section::new("Annual mean HVAC power in W") }
         .with(Block::Table(Table::new(&["PMV"], &designs, rows)))
+        .with(study.has_intervals().then(interval_note))
         .with(weights_note(study))
+}
+
+/// What stands in brackets.
+pub(super) fn interval_note() -> Block {
+    Block::Note(vec![Span::Text(
+        "In brackets: 90 % interval, from the days of the recorded years; digits that it does not let stand are left out.",
+    )])
 }
 
 fn data(study: &StudyReport) -> DataTable {
     let missing = study.missing_months().iter().map(u8::to_string).collect::<Vec<_>>().join(" ");
+    let power = |r: &AnnualRow| study.annual_ends(&r.design, r.window);
+    let reduction = |r: &AnnualRow| study.interval(&r.design, r.window)?.reduction_vs_ptc;
     DataTable::of(
         "annual_average.csv",
         &study.annual,
@@ -34,6 +50,10 @@ fn data(study: &StudyReport) -> DataTable {
             ("unsolved_count", &|r| r.unsolved_count.to_string()),
             ("unsolved_weight", &|r| r.unsolved_weight.to_string()),
             ("reduction_vs_ptc", &|r| optional(r.reduction_vs_ptc)),
+            ("hvac_power_low_w", &|r| optional(power(r).map(|[low, _]| low))),
+            ("hvac_power_high_w", &|r| optional(power(r).map(|[_, high]| high))),
+            ("reduction_vs_ptc_low", &|r| optional(reduction(r).map(|[low, _]| low))),
+            ("reduction_vs_ptc_high", &|r| optional(reduction(r).map(|[_, high]| high))),
             ("missing_months", &|_| missing.clone()),
         ],
     )

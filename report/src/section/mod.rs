@@ -21,6 +21,7 @@ mod repeat;
 mod setpoints;
 mod simulation;
 mod simulation_classes;
+mod sureness;
 mod title;
 
 pub use findings::{PaperFinding, Verdict, paper_findings};
@@ -36,6 +37,7 @@ pub(crate) fn all(study: &StudyReport) -> Result<Vec<Section>, ReportError> {
         Some(pareto::section(study)),
         Some(annual::section(study)),
         reduction::section(study),
+        sureness::section(study),
         parts::section(study),
         limits::section(study),
         Some(findings::section(study)),

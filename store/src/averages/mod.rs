@@ -11,7 +11,9 @@ use sqlx::sqlite::SqliteConnection;
 use crate::checks::{commit, seal_averages};
 use crate::row::begin;
 use crate::stages::{RecordedStage, StageRecord, record_stage};
-use crate::{ControlTrace, Energy, SetpointRow, Store, StoreError, StoredGrid, control_views, energy, setpoints};
+use crate::{
+    ControlTrace, Energy, SetpointRow, Store, StoreError, StoredGrid, control_views, energy, setpoints, uncertainty,
+};
 
 impl Store {
     /// Completes the optima: renews the averages of the months that have changed, and records the stage.
@@ -30,6 +32,8 @@ impl Store {
             "DELETE FROM annual_average",
             optima::ANNUAL,
             optima::HISTORY,
+            optima::ANNUAL_INTERVAL,
+            optima::DESIGN_INTERVAL,
             "DELETE FROM limit_share",
             optima::LIMIT_SHARE,
             "DELETE FROM annual_energy",
@@ -106,6 +110,7 @@ impl Store {
             if let Some((grid, energy)) = energy {
                 let run_id = last_run(&mut tx).await?;
                 energy::put(&mut tx, run_id, grid, energy).await?;
+                uncertainty::put(&mut tx, run_id, grid, &energy.uncertainty).await?;
             }
             for &sql in renew {
                 execute(&mut tx, sql).await?;

@@ -79,6 +79,17 @@ pub const HISTORY: &str = "INSERT OR REPLACE INTO annual_history
 SELECT run_id, design, pmv_limit, pmv_min, pmv_max, hvac_power_w, sample_count, unsolved_count
 FROM annual_average WHERE run_id IN (SELECT run_id FROM run)";
 
+/// Beside the intervals stand the figures that every other table has, to the last bit.
+pub const ANNUAL_INTERVAL: &str = "UPDATE annual_interval AS i SET hvac_power_w = a.hvac_power_w
+FROM annual_average AS a WHERE a.design = i.design AND a.pmv_min = i.pmv_min AND a.pmv_max = i.pmv_max";
+
+pub const DESIGN_INTERVAL: &str = "UPDATE design_interval AS i SET
+    other_takes_more_w = o.hvac_power_w - a.hvac_power_w,
+    saving = (o.hvac_power_w - a.hvac_power_w) / nullif(o.hvac_power_w, 0.0)
+FROM annual_average AS a
+JOIN annual_average AS o ON o.pmv_min = a.pmv_min AND o.pmv_max = a.pmv_max
+WHERE a.design = i.design AND o.design = i.other_design AND a.pmv_min = i.pmv_min AND a.pmv_max = i.pmv_max";
+
 /// In which share of the solved year a limit of comfort binds, and the air unit cools.
 pub const LIMIT_SHARE: &str = "INSERT INTO limit_share
 SELECT

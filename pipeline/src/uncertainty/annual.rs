@@ -1,0 +1,102 @@
+//! Intervals of the annual means and of what designs save, from drawn years.
+
+use rayon::prelude::*;
+use store::{AnnualEnds, DaySum, Ends, MonthDays, PairEnds};
+
+use super::bootstrap::{Draws, interval};
+use super::{DAYS_OF_MONTH, Year};
+
+/// Samples, power, power in heating, energy with a distance, distance.
+const QUANTITIES: usize = 5;
+/// Power, power in heating, power in cooling, energy for a distance.
+const OUTPUTS: usize = 4;
+const J_PER_KWH_AND_M_PER_KM: f64 = 3600.0;
+
+/// What is drawn for the designs of one window.
+struct OfWindow {
+    designs: usize,
+    values: Vec<f64>,
+}
+
+impl OfWindow {
+    fn new(year: &Year<'_>, draws: &Draws, window: usize) -> Self {
+        let designs = year.points / year.windows;
+        let quantities = |s: &DaySum| [s.samples, s.power_w, s.heating_power_w, s.driven_energy_j, s.distance_m];
+        let of_day = |month: &MonthDays, n: usize| {
+            (0..designs).flat_map(|design| quantities(&month.cells[design * year.windows + window][n])).collect()
+        };
+        let parts = year.parts(&of_day);
+        let values = draws.each(&parts, designs * QUANTITIES, designs * OUTPUTS, |months, out| {
+            for design in 0..designs {
+                let of_design = |month: usize| &months[(month * designs + design) * QUANTITIES..][..QUANTITIES];
+                out[design * OUTPUTS..][..OUTPUTS].copy_from_slice(&means(&of_design));
+            }
+        });
+        Self { designs, values }
+    }
+
+    fn ends(&self, value: impl Fn(&[f64]) -> f64) -> Ends {
+        interval(self.values.chunks_exact(self.designs * OUTPUTS).map(value))
+    }
+}
+
+/// Months weigh by their days, within one samples alike (paper, eq. meanPower); those without samples do not weigh.
+fn means<'m>(of_month: &dyn Fn(usize) -> &'m [f64]) -> [f64; OUTPUTS] {
+    let (mut weight, mut power_w, mut heating_w, mut energy_j, mut distance_m) = (0.0, 0.0, 0.0, 0.0, 0.0);
+    for (month, days) in DAYS_OF_MONTH.into_iter().enumerate() {
+        let &[samples, of_power, of_heating, of_energy, of_distance] = of_month(month) else { continue };
+        if samples > 0.0 {
+            let of_sample = days / samples;
+            weight += days;
+            power_w += of_sample * of_power;
+            heating_w += of_sample * of_heating;
+            energy_j += of_sample * of_energy;
+            distance_m += of_sample * of_distance;
+        }
+    }
+    [
+        power_w / weight,
+        heating_w / weight,
+        (power_w - heating_w) / weight,
+        energy_j / distance_m / J_PER_KWH_AND_M_PER_KM,
+    ]
+}
+
+/// The same without any interval.
+pub fn unknown(year: &Year<'_>) -> (Vec<AnnualEnds>, Vec<PairEnds>) {
+    let pair = |designs, window| PairEnds { designs, window, other_takes_more_w: None, saving: None };
+    (vec![AnnualEnds::default(); year.points], pairs(year).map(|(designs, window)| pair(designs, window)).collect())
+}
+
+/// Every design with every other one in each window.
+fn pairs(year: &Year<'_>) -> impl Iterator<Item = ([usize; 2], usize)> {
+    let (windows, designs) = (year.windows, year.points / year.windows.max(1));
+    let of = move |window| (0..designs).flat_map(move |a| (0..designs).map(move |b| ([a, b], window)));
+    (0..windows).flat_map(of).filter(|([a, b], _)| a != b)
+}
+
+/// Intervals of every design and window, and of every design against every other one in the same window.
+pub fn intervals(year: &Year<'_>, draws: &Draws, ptc: Option<usize>) -> (Vec<AnnualEnds>, Vec<PairEnds>) {
+    let drawn: Vec<OfWindow> = (0..year.windows).map(|window| OfWindow::new(year, draws, window)).collect();
+    let power_w = |of: &[f64], design: usize| of[design * OUTPUTS];
+    let saving = |of: &[f64], design, other| 1.0 - power_w(of, design) / power_w(of, other);
+    let annual = |point: usize| {
+        let (design, drawn) = (point / year.windows, &drawn[point % year.windows]);
+        let at = |output: usize| drawn.ends(|of| of[design * OUTPUTS + output]);
+        AnnualEnds {
+            hvac_power_w: at(0),
+            heating_power_w: at(1),
+            cooling_power_w: at(2),
+            kwh_per_km: at(3),
+            reduction_vs_ptc: ptc.and_then(|ptc| drawn.ends(|of| saving(of, design, ptc))),
+        }
+    };
+    let pair = |([design, other], window): ([usize; 2], usize)| PairEnds {
+        designs: [design, other],
+        window,
+        other_takes_more_w: drawn[window].ends(|of| power_w(of, other) - power_w(of, design)),
+        saving: drawn[window].ends(|of| saving(of, design, other)),
+    };
+    let wanted: Vec<_> = pairs(year).collect();
+    ((0..year.points).into_par_iter().map(annual).collect(), wanted.into_par_iter().map(pair).collect())
+}

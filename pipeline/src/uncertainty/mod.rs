@@ -1,0 +1,70 @@
+//! How sure the year is: intervals from its days, the independent samples of a month, the year without a part of it.
+
+mod annual;
+mod bootstrap;
+mod days;
+mod left_out;
+mod months;
+
+use chrono::Datelike;
+use std::collections::BTreeMap;
+use store::{MonthDays, MonthSums, Uncertainty};
+
+use self::bootstrap::{Draws, Part};
+pub use self::days::{DaysOfMonth, day};
+
+/// Days of the months in a year without 29 February (paper, eq. meanPower).
+const DAYS_OF_MONTH: [f64; bootstrap::MONTHS] =
+    [31.0, 28.0, 31.0, 30.0, 31.0, 30.0, 31.0, 31.0, 30.0, 31.0, 30.0, 31.0];
+
+/// The year as days: every month with the sums of its days.
+struct Year<'m> {
+    months: Vec<&'m MonthDays>,
+    points: usize,
+    windows: usize,
+    /// Every day once, with its place.
+    places: BTreeMap<chrono::NaiveDate, usize>,
+}
+
+impl<'m> Year<'m> {
+    fn new(mut months: Vec<&'m MonthDays>, points: usize, windows: usize) -> Self {
+        months.sort_by_key(|m| m.month);
+        let days: std::collections::BTreeSet<_> = months.iter().flat_map(|m| m.days.iter().copied()).collect();
+        Self { months, points, windows, places: days.into_iter().zip(0..).collect() }
+    }
+
+    /// What each day adds to each month: `sums` of the day at a place of the month.
+    fn parts(&self, sums: &dyn Fn(&MonthDays, usize) -> Vec<f64>) -> Vec<Part> {
+        let of_month = |m: &&MonthDays| -> Vec<Part> {
+            let part = |(n, day)| Part { day: self.places[day], month: usize::from(m.month) - 1, sums: sums(m, n) };
+            m.days.iter().enumerate().map(part).collect()
+        };
+        self.months.iter().flat_map(of_month).collect()
+    }
+}
+
+/// How sure a year is, from the days of all months, those that have changed (`new`) and the others (`kept`), and from its classes.
+/// `ptc` is the place of the design with resistive heating.
+pub fn uncertainty(
+    new: Vec<MonthDays>,
+    kept: &[MonthDays],
+    classes: &[&MonthSums],
+    [points, windows]: [usize; 2],
+    ptc: Option<usize>,
+) -> Uncertainty {
+    let year = Year::new(kept.iter().chain(&new).collect(), points, windows);
+    let months: Vec<u8> = year.places.keys().map(|day| day.month() as u8).collect();
+    let mut days_of_month = [0; bootstrap::MONTHS];
+    months.iter().for_each(|month| days_of_month[usize::from(*month) - 1] += 1);
+    let single_day_months = days_of_month.iter().filter(|days| **days == 1).count() as u64;
+    // Nobody knows how far a month would move that has been seen on one day.
+    let (annual, pairs) = if single_day_months > 0 {
+        annual::unknown(&year)
+    } else {
+        annual::intervals(&year, &Draws::of_study(&months), ptc)
+    };
+    let spreads = months::spreads(&year);
+    let left_out = left_out::left_out(&year, classes, ptc);
+    let day_count = months.len() as u64;
+    Uncertainty { days: new, day_count, single_day_months, annual, pairs, spreads, left_out }
+}
