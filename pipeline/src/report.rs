@@ -1,11 +1,10 @@
 //! The report: rows of the database onto the disk. No input is read.
 
-use cabin::ComfortWindow;
 use ingest::FileKind;
 use report::{ReportFile, StudyReport};
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
-use store::{RecordedStage, SetpointRow, StageRecord, Store};
+use store::{RecordedStage, StageRecord, Store};
 use study::Study;
 use study::assumptions::assumptions;
 
@@ -136,17 +135,6 @@ pub(crate) fn say_stale(
     Ok(())
 }
 
-/// The paper's three windows of its figure `temperature-setpoints`, or those of the design that are nearest.
-fn shown_windows(setpoints: &[SetpointRow], design: &str) -> Vec<ComfortWindow> {
-    let mut shown = Vec::new();
-    for limit in [0.25, 0.625, 1.0] {
-        let windows = setpoints.iter().filter(|row| row.design == design).map(|row| row.window);
-        let off = |w: &ComfortWindow| (w.pmv_limit() - limit).abs();
-        shown.extend(windows.min_by(|a, b| off(a).total_cmp(&off(b))).filter(|w| !shown.contains(w)));
-    }
-    shown
-}
-
 /// What the database holds for the report.
 fn content(study: &Study, store: &mut Store) -> Result<StudyReport, PipelineError> {
     let setpoints = store.setpoints()?;
@@ -154,8 +142,10 @@ fn content(study: &Study, store: &mut Store) -> Result<StudyReport, PipelineErro
     let mut clouds = Vec::new();
     // The last of the designs that are driven stands for them.
     if let Some(year) = control_years.last() {
-        for window in shown_windows(&setpoints, &year.point.design) {
-            clouds.push(store.cloud(&year.point.design, window)?);
+        let design = &year.point.design;
+        let windows: Vec<_> = setpoints.iter().filter(|r| r.design == *design).map(|r| r.window).collect();
+        for window in report::nearest_windows(&windows) {
+            clouds.push(store.cloud(design, window)?);
         }
     }
     let files = store.files()?;
@@ -172,6 +162,9 @@ fn content(study: &Study, store: &mut Store) -> Result<StudyReport, PipelineErro
         annual: store.annual()?,
         annual_intervals: store.annual_intervals()?,
         design_intervals: store.design_intervals()?,
+        vehicle: study.vehicle.clone(),
+        disturbance_bins: store.disturbance_bins()?,
+        vote_bins: store.vote_bins()?,
         month_spreads: store.month_spreads()?,
         left_out: store.left_out()?,
         monthly: store.monthly()?,

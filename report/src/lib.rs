@@ -13,11 +13,9 @@ mod render;
 mod section;
 mod study_report;
 
-pub use figure::{
-    Curve, HeatFlowFigure, Panel, PanelFigure, ParetoPoint, heat_flow_svg, panels_svg, simulated_pareto_svg,
-};
+pub use figure::{HeatFlowFigure, heat_flow_svg};
 pub use headline::headline;
-pub use section::{PaperFinding, Verdict, paper_findings};
+pub use section::{PaperFinding, Verdict, nearest_windows, paper_findings};
 pub use study_report::StudyReport;
 
 /// A file of the report.
@@ -30,7 +28,7 @@ pub struct ReportFile {
 }
 
 /// The names of all files that a report can have.
-pub const FILES: [&str; 28] = [
+pub const FILES: [&str; 32] = [
     "report.md",
     "aircurtain_setpoint.svg",
     "annual_average.csv",
@@ -45,6 +43,8 @@ pub const FILES: [&str; 28] = [
     "curtain_threshold.csv",
     "data_quality.csv",
     "design_interval.csv",
+    "heat_flow_cold.svg",
+    "heat_flow_hot.svg",
     "left_out.csv",
     "mission_cold.svg",
     "mission_hot.svg",
@@ -52,6 +52,8 @@ pub const FILES: [&str; 28] = [
     "monthly_average.csv",
     "paper_comparison.csv",
     "pareto.svg",
+    "pmv_range.svg",
+    "scenarios_overview.svg",
     "setpoint_profile.csv",
     "simulated_pareto.svg",
     "simulation_annual.csv",

@@ -1,12 +1,12 @@
 //! Everything that a report says: rows of the database, and what the study rests on.
 
-use cabin::ComfortWindow;
+use cabin::{ComfortWindow, Vehicle};
 use chrono_tz::Tz;
 use ingest::FileRecord;
 use store::{
     AnnualInterval, AnnualRow, Cloud, ControlClass, ControlPoint, ControlTrace, ControlYear, DesignInterval, DesignRow,
-    Ends, ExclusionCount, LeftOutRow, LimitShare, MissionTrace, MonthRow, MonthlyRow, Outside, SetpointRow,
-    SimulatedClass, SimulatedYear, SimulationFailure, SpreadRow, StatusCounts, TraceWindow,
+    DisturbanceBin, Ends, ExclusionCount, LeftOutRow, LimitShare, MissionTrace, MonthRow, MonthlyRow, Outside,
+    SetpointRow, SimulatedClass, SimulatedYear, SimulationFailure, SpreadRow, StatusCounts, TraceWindow, VoteBin,
 };
 use study::assumptions::Assumption;
 
@@ -32,6 +32,12 @@ pub struct StudyReport {
     pub designs: Vec<DesignRow>,
     /// Annual means by design and window.
     pub annual: Vec<AnnualRow>,
+    /// The bus.
+    pub vehicle: Vehicle,
+    /// How often disturbances lie where.
+    pub disturbance_bins: Vec<DisturbanceBin>,
+    /// How often passengers vote what at the optima.
+    pub vote_bins: Vec<VoteBin>,
     /// Intervals of 90 % of the annual means.
     pub annual_intervals: Vec<AnnualInterval>,
     /// Of what each design saves against each other one.

@@ -16,6 +16,7 @@ mod energy;
 mod error;
 mod files;
 mod grid;
+mod histograms;
 mod history;
 mod missions;
 mod optima;
@@ -44,6 +45,7 @@ pub use energy::{AirUnitSide, Bin, Class, ClassSum, ClassYear, Energy, MonthFlow
 pub use error::StoreError;
 pub use files::KnownFile;
 pub use grid::{DesignRow, GridChange, StoredGrid};
+pub use histograms::{DisturbanceBin, VoteBin};
 pub use history::{Basis, Change, ChangeKind, PastAverage};
 pub use missions::StoredSegment;
 pub use optima::{MissingOptima, NewOptimum, StatusCounts, StoredOptimum};

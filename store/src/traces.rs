@@ -51,6 +51,8 @@ pub struct MissionTrace {
 pub struct TraceWindow {
     /// `cold` or `hot`.
     pub label: String,
+    /// Comfort window.
+    pub window: ComfortWindow,
     /// Mean power of the steady-state optima in W.
     pub static_mean_hvac_power_w: f64,
     /// Their largest absolute vote.
@@ -156,7 +158,7 @@ impl Store {
     /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn trace_windows(&mut self) -> Result<Vec<TraceWindow>, StoreError> {
         let sql =
-            "SELECT t.label, r.static_mean_hvac_power_w, r.static_max_abs_pmv, r.mean_hvac_power_w, r.max_abs_pmv_15min
+            "SELECT t.label, w.pmv_min, w.pmv_max, r.static_mean_hvac_power_w, r.static_max_abs_pmv, r.mean_hvac_power_w, r.max_abs_pmv_15min
             FROM mission_trace AS t
             JOIN simulated_mission AS r ON r.source_file_id = t.source_file_id AND r.design_id = t.design_id
             JOIN comfort_window AS w ON w.window_id = r.window_id
@@ -164,6 +166,7 @@ impl Store {
         self.select(sql, |r| {
             Ok(TraceWindow {
                 label: r.try_get("label")?,
+                window: window(r)?,
                 static_mean_hvac_power_w: r.try_get("static_mean_hvac_power_w")?,
                 static_max_abs_pmv: r.try_get("static_max_abs_pmv")?,
                 mean_hvac_power_w: r.try_get("mean_hvac_power_w")?,

@@ -1,12 +1,13 @@
-//! Figures as SVG: pure functions of what they show.
+//! Figures as SVG: pure functions of what they show, all drawn by one engine for one column of print.
+//!
+//! `chart` draws whatever has axes, `heat_flow` the flows of one operation; `palette` says which colour means what.
 
-mod clouds;
+mod axis;
+mod canvas;
+mod chart;
 mod heat_flow;
-mod panels;
-mod pareto;
+pub(crate) mod palette;
 
-pub(crate) use clouds::{CloudFigure, CloudPanel, PointCloud, clouds_svg};
+pub(crate) use axis::{Axis, Ticks};
+pub(crate) use chart::{Chart, Mark, Panel, Side, chart_svg};
 pub use heat_flow::{HeatFlowFigure, heat_flow_svg};
-pub use panels::{Curve, Panel, PanelFigure, panels_svg};
-pub(crate) use pareto::{Axes, Front, fronts_svg, pareto_svg};
-pub use pareto::{ParetoPoint, simulated_pareto_svg};

@@ -3,31 +3,29 @@
 use cabin::ComfortWindow;
 use store::{ControlPoint, ControlYear, Outside};
 
-use super::control_front::{Coordinate, Verdict, verdicts};
+use super::control_front::{Coordinate, Front, Verdict, controllers_chart, verdicts};
 use super::weights_note;
-use crate::StudyReport;
 use crate::document::{Block, DataTable, Figure, Section, Span, Table};
-use crate::figure::{Axes, Front, fronts_svg};
+use crate::figure::{Chart, chart_svg};
 use crate::numbers::{optional, percent, signed_percent, text, watts, window};
-
-const DASH: &str = "6 3";
+use crate::{ReportError, StudyReport};
 
 /// The last of the designs that are driven stands for them; all are in the tables of data.
-pub(super) fn section(study: &StudyReport) -> Option<Section> {
+pub(super) fn section(study: &StudyReport) -> Result<Option<Section>, ReportError> {
     let mut tables = Vec::new();
     if !study.control_failures.is_empty() {
         tables.push(failures(study));
     }
     if study.control_years.is_empty() && tables.is_empty() {
-        return None;
+        return Ok(None);
     }
     tables.extend([annual(study), outside(study)]);
     let Some(design) = study.control_years.last().map(|y| y.point.design.clone()) else {
         let text = "No mission could be driven by a controller; control_failures.csv says why.";
-        return Some(Section { tables, ..Section::new("Causal controllers") }.with(Block::words(text)));
+        return Ok(Some(Section { tables, ..Section::new("Causal controllers") }.with(Block::words(text))));
     };
     let years: Vec<&ControlYear> = study.control_years.iter().filter(|y| y.point.design == design).collect();
-    let shown = shown(&years)?;
+    let Some(shown) = shown(&years) else { return Ok(None) };
     let title = format!("Causal controllers over the year: {design}");
     let mut section = Section { tables, ..Section::new(title) }
         .with(Block::words(
@@ -47,11 +45,11 @@ pub(super) fn section(study: &StudyReport) -> Option<Section> {
             ]))
             .with(Block::Table(published(&verdicts)));
     }
-    for (file, caption, svg) in [
-        ("control_pareto.svg", "Annual power over the mean vote", votes_svg(&years)),
-        ("control_outside.svg", "Annual power over the passenger-hours outside", outside_svg(study, &design, shown)),
+    for (file, caption, chart) in [
+        ("control_pareto.svg", "Annual power over the mean vote", votes(&years)),
+        ("control_outside.svg", "Annual power over the passenger-hours outside", hours_outside(study, &design, shown)),
     ] {
-        section.figures.push(Figure { file, svg });
+        section.figures.push(Figure { file, svg: chart_svg(&chart)? });
         section = section.with(Block::Figure { file, caption });
     }
     if let Some(table) = trained(&years) {
@@ -61,7 +59,7 @@ pub(super) fn section(study: &StudyReport) -> Option<Section> {
             ))
             .with(Block::Table(table));
     }
-    Some(section.with(weights_note(study)))
+    Ok(Some(section.with(weights_note(study))))
 }
 
 /// The window that is driven and is nearest to ±1.
@@ -162,55 +160,46 @@ fn trained(years: &[&ControlYear]) -> Option<Table> {
 fn fronts(years: &[&ControlYear], of_point: impl Fn(&ControlPoint) -> Option<(f64, f64)>) -> Vec<Front> {
     let mut fronts = Vec::new();
     let points = of(years, "extracted").iter().filter_map(|y| of_point(&y.point)).collect();
-    fronts.push(Front { name: "extracted".to_owned(), dash: "", points });
+    fronts.push(Front::new("extracted", points));
     let mut names: Vec<&str> = Vec::new();
     for y in years.iter().filter(|y| !y.point.controller.starts_with("extracted")) {
         if !names.contains(&y.point.controller.as_str()) {
             names.push(&y.point.controller);
             let points = of_point(&y.point).into_iter().collect();
-            fronts.push(Front { name: y.point.controller.clone(), dash: "", points });
+            fronts.push(Front::new(&y.point.controller, points));
         }
     }
     fronts
 }
 
-fn votes_svg(years: &[&ControlYear]) -> String {
+fn votes(years: &[&ControlYear]) -> Chart {
     let steady = of(years, "extracted");
     let steady =
         steady.iter().filter_map(|y| Some((y.point.static_mean_abs_pmv?, y.point.static_mean_hvac_power_w / 1e3)));
-    let mut all = vec![Front { name: "steady state".to_owned(), dash: DASH, points: steady.collect() }];
+    let mut all = vec![Front::steady(steady.collect())];
     all.extend(fronts(years, |p| Some((p.mean_abs_pmv?, p.mean_hvac_power_w / 1e3))));
-    let axes = Axes {
-        title: "A year of causal controllers: power over the mean vote",
-        x: "mean |PMV| of the passengers (15-minute votes)",
-        y: "annual mean HVAC power in kW",
-        x_step: 0.25,
-        told: "Annual mean HVAC power in kW over the mean absolute vote of the passengers, by controller",
-    };
-    fronts_svg(&all, &axes)
+    controllers_chart(
+        "A year of causal controllers: power over the mean vote",
+        "Annual mean HVAC power over the mean |PMV| of the passengers, by their 15-minute votes.",
+        ["mean |PMV|", "annual mean HVAC power in kW"],
+        &all,
+    )
 }
 
-fn outside_svg(study: &StudyReport, design: &str, shown: ComfortWindow) -> String {
+fn hours_outside(study: &StudyReport, design: &str, shown: ComfortWindow) -> Chart {
     let rows = study.control_outside.iter().filter(|o| o.design == design && o.window == shown);
     let point = |o: &Outside| Some((100.0 * o.outside_fraction?, o.mean_hvac_power_w / 1e3));
     let (followed, others): (Vec<&Outside>, Vec<&Outside>) = rows.partition(|o| o.profile.is_some());
     let points = followed.into_iter().filter_map(point).collect();
-    // Steady state is never outside its window; its place keeps the colours those of the other figure.
-    let steady = Front { name: "steady state".to_owned(), dash: DASH, points: Vec::new() };
-    let mut fronts = vec![steady, Front { name: "extracted".to_owned(), dash: "", points }];
-    fronts.extend(others.into_iter().map(|o| Front {
-        name: o.controller.clone(),
-        dash: "",
-        points: point(o).into_iter().collect(),
-    }));
-    let axes = Axes {
-        title: "A year of causal controllers: power over the hours outside one window",
-        x: "passenger-hours outside in %",
-        y: "annual mean HVAC power in kW",
-        x_step: 10.0,
-        told: "Annual mean HVAC power in kW over the share of passenger-hours outside the shown comfort window",
-    };
-    fronts_svg(&fronts, &axes)
+    // Steady state is never outside its window.
+    let mut fronts = vec![Front::steady(Vec::new()), Front::new("extracted", points)];
+    fronts.extend(others.into_iter().map(|o| Front::new(&o.controller, point(o).into_iter().collect())));
+    controllers_chart(
+        "A year of causal controllers: power over the hours outside one window",
+        &format!("Annual mean HVAC power over the share of the passenger-hours outside PMV {}.", window(shown)),
+        ["passenger-hours outside in %", "annual mean HVAC power in kW"],
+        &fronts,
+    )
 }
 
 fn annual(study: &StudyReport) -> DataTable {

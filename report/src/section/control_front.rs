@@ -1,8 +1,57 @@
-//! Whether extracted profiles are better than other setpoints that take the same power.
+//! Controllers beside each other: whether extracted profiles are better than other setpoints that take the same power, and how
+//! figures show it.
 
 use cabin::ComfortWindow;
 
 use crate::StudyReport;
+use crate::figure::palette::{BLACK, LIMIT, Marker, Style};
+use crate::figure::{Axis, Chart, Mark, Panel};
+
+/// A controller's line, or its point.
+pub(super) struct Front {
+    pub name: String,
+    is_steady: bool,
+    /// Discomfort and power in kW, in the order of the line.
+    points: Vec<(f64, f64)>,
+}
+
+impl Front {
+    pub fn new(name: &str, points: Vec<(f64, f64)>) -> Self {
+        Self { name: name.to_owned(), is_steady: false, points }
+    }
+
+    /// What the optima come to, which no controller reaches.
+    pub fn steady(points: Vec<(f64, f64)>) -> Self {
+        Self { is_steady: true, ..Self::new("steady state", points) }
+    }
+}
+
+/// Power over discomfort. Extracted profiles are black, the optima grey; all others have a look of their own.
+pub(super) fn controllers_chart(title: &str, told: &str, [x, y]: [&str; 2], fronts: &[Front]) -> Chart {
+    let mut next = 0;
+    let mut style = |front: &Front| match front.name.as_str() {
+        _ if front.is_steady => Style { colour: LIMIT, dash: "3 1.5", width: 1.0, marker: Some(Marker::Cross) },
+        "extracted" => Style { colour: BLACK, dash: "", width: 1.1, marker: Some(Marker::OpenCircle) },
+        _ => {
+            next += 1;
+            Style::of_place(next - 1)
+        }
+    };
+    let line =
+        |front: &Front| Mark::Line { name: front.name.clone(), style: style(front), points: front.points.clone() };
+    Chart {
+        title: title.to_owned(),
+        told: told.to_owned(),
+        columns: 1,
+        panels: vec![Panel {
+            x: Axis::new(x).from(0.0),
+            y: Axis::new(y).from(0.0),
+            marks: fronts.iter().map(line).collect(),
+            ..Panel::default()
+        }],
+        height: 150.0,
+    }
+}
 
 /// How a controller compares with extracted profiles of the same annual power.
 #[derive(Debug, Clone, PartialEq)]

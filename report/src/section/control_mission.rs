@@ -1,14 +1,15 @@
 //! One mission under causal controllers (paper, figures `causal-time-resolved` and `causal-pareto-front`).
 
-use store::ControlTrace;
+use store::{ControlMinute, ControlTrace};
 
+use super::missions::{clock_h, clock_label};
 use crate::document::{Block, Figure, Section};
-use crate::figure::{Axes, Curve, Front, Panel, PanelFigure, fronts_svg, panels_svg};
+use crate::figure::palette::{LIMIT, Style};
+use crate::figure::{Axis, Chart, Mark, Panel, Ticks, chart_svg};
 use crate::numbers::window;
 use crate::{ReportError, StudyReport};
 
-const COLOURS: [&str; 5] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#777777"];
-const DASH: &str = "4 3";
+use super::control_front::{Front, controllers_chart};
 
 /// A part of the section before it, without a title of its own.
 pub(super) fn section(study: &StudyReport) -> Result<Option<Section>, ReportError> {
@@ -17,10 +18,10 @@ pub(super) fn section(study: &StudyReport) -> Result<Option<Section>, ReportErro
     }
     let mut section = Section { level: 0, ..Section::default() };
     let (file, caption) = ("causal_time_resolved.svg", "A hot mission under causal controllers");
-    section.figures.push(Figure { file, svg: panels_svg(&figure(&study.control_traces, study.note.as_deref()))? });
+    section.figures.push(Figure { file, svg: chart_svg(&in_time(study))? });
     section = section.with(Block::Figure { file, caption });
     let (file, caption) = ("causal_pareto_front.svg", "The same mission under all controllers");
-    section.figures.push(Figure { file, svg: pareto(study) });
+    section.figures.push(Figure { file, svg: chart_svg(&pareto(study))? });
     Ok(Some(section.with(Block::Figure { file, caption })))
 }
 
@@ -28,76 +29,87 @@ fn name(trace: &ControlTrace) -> String {
     if trace.controller == "extracted" { format!("PMV {}", window(trace.window)) } else { trace.controller.clone() }
 }
 
-fn figure(traces: &[ControlTrace], note: Option<&str>) -> PanelFigure {
-    let hour = |minute: usize| (minute as f64 + 0.5) / 60.0;
+fn in_time(study: &StudyReport) -> Chart {
+    let traces = &study.control_traces;
+    let first = traces.first();
+    // The mission begins when that of the simulation does.
+    let segments = study.traces.iter().filter_map(|t| t.segments.first()).map(|(sample, _)| &sample.segment);
+    let start = segments.into_iter().find(|s| first.is_some_and(|t| t.mission == s.mission)).map(|s| s.start);
+    let first_h = start.map_or(0.0, |start| clock_h(start, study.zone));
+    let hour = |minute: usize| first_h + (minute as f64 + 0.5) / 60.0;
     let longest = traces.iter().map(|t| t.minutes.len()).max().unwrap_or(0);
-    let coloured = || traces.iter().enumerate().map(|(i, trace)| (COLOURS[i % COLOURS.len()], trace));
-    let curves = |value: fn(&store::ControlMinute) -> f64| -> Vec<Curve> {
-        let curve = |(colour, trace): (&'static str, &ControlTrace)| Curve {
-            name: name(trace),
-            colour,
-            dash: "",
-            width: 1.2,
-            points: trace.minutes.iter().enumerate().map(|(i, m)| (hour(i), value(m))).collect(),
-        };
-        coloured().map(curve).collect()
+    let end_h = first_h + longest as f64 / 60.0;
+    let line = |name: String, style: Style, trace: &ControlTrace, value: &dyn Fn(&ControlMinute) -> f64| Mark::Line {
+        name,
+        style,
+        points: trace.minutes.iter().enumerate().map(|(i, m)| (hour(i), value(m))).collect(),
+    };
+    let styled = || traces.iter().enumerate().map(|(i, trace)| (Style::of_place(2 * i).without_marker(), trace));
+    let lines = |value: fn(&ControlMinute) -> f64| -> Vec<Mark> {
+        let of =
+            |(style, trace): (Style, &ControlTrace)| line(name(trace), Style { width: 0.9, ..style }, trace, &value);
+        styled().map(of).collect()
     };
     // At rest there is no setpoint: the line breaks.
-    let setpoints = coloured().map(|(colour, trace)| Curve {
-        name: String::new(),
-        colour,
-        dash: DASH,
-        width: 1.0,
-        points: trace.minutes.iter().enumerate().map(|(i, m)| (hour(i), m.setpoint_c.unwrap_or(f64::NAN))).collect(),
+    let setpoints = styled().map(|(style, trace)| {
+        let style = Style { dash: "0.8 1.4", width: 0.7, ..style };
+        line(String::new(), style, trace, &|m| m.setpoint_c.unwrap_or(f64::NAN))
     });
-    let mut cabin = curves(|m| m.cabin_temperature_c);
+    let mut cabin = lines(|m| m.cabin_temperature_c);
     cabin.extend(setpoints);
-    let ambient = traces.first().map(|trace| Curve {
-        name: "ambient".to_owned(),
-        colour: COLOURS[4],
-        dash: "",
-        width: 1.2,
-        points: trace.minutes.iter().enumerate().map(|(i, m)| (hour(i), m.ambient_temperature_c)).collect(),
-    });
-    let panel = |label: &str, curves| Panel { label: label.to_owned(), curves };
-    let first = traces.first();
-    PanelFigure {
+    let ambient =
+        first.map(|trace| line("ambient".to_owned(), Style::line(LIMIT, "", 0.8), trace, &|m| m.ambient_temperature_c));
+    let axis = |label: &str, marks, height_ticks| Panel {
+        x: Axis::default().from(first_h).to(end_h).with(height_ticks),
+        y: Axis::new(label),
+        marks,
+        ..Panel::default()
+    };
+    let mut votes = lines(|m| m.pmv_15min);
+    for trace in traces.iter().filter(|t| t.controller == "extracted") {
+        let name = format!("±{}", trace.window.pmv_limit());
+        votes.push(Mark::Limit { at: trace.window.pmv_max(), name });
+        votes.push(Mark::Limit { at: trace.window.pmv_min(), name: String::new() });
+    }
+    let mut panels = vec![
+        axis("ambient °C", ambient.into_iter().collect(), Ticks::None),
+        axis("cabin °C", cabin, Ticks::None),
+        axis("PMV, 15 minutes", votes, Ticks::None),
+        axis("HVAC kW", lines(|m| m.hvac_power_w / 1e3), Ticks::Clock),
+    ];
+    if let Some(last) = panels.last_mut() {
+        last.x.label = match start {
+            Some(start) => clock_label(start, study.zone),
+            None => "hours and minutes since the start of the mission".to_owned(),
+        };
+    }
+    let note = study.note.as_ref().map_or_else(String::new, |note| format!(" {note}"));
+    Chart {
         title: format!("A hot mission with {} under causal controllers", first.map_or("", |t| &t.design)),
-        caption: format!("{}; setpoints dashed", first.map_or("", |t| &t.mission)),
-        note: note.unwrap_or_default().to_owned(),
-        hours: [0.0, longest as f64 / 60.0],
-        axis: "h since the start of the mission".to_owned(),
-        panels: vec![
-            panel("ambient °C", ambient.into_iter().collect()),
-            panel("cabin °C", cabin),
-            panel("PMV, 15-minute mean", curves(|m| m.pmv_15min)),
-            panel("HVAC power kW", curves(|m| m.hvac_power_w / 1e3)),
-        ],
+        told: format!("{}; setpoints dotted.{note}", first.map_or("", |t| &t.mission)),
+        columns: 1,
+        panels,
+        height: 54.0,
     }
 }
 
-fn pareto(study: &StudyReport) -> String {
+fn pareto(study: &StudyReport) -> Chart {
     let design = study.control_traces.first().map(|t| &t.design);
     let points = || study.control_trace_points.iter().filter(|(p, ..)| Some(&p.design) == design);
     let extracted = || points().filter(|(p, ..)| p.controller == "extracted");
     let steady = extracted().map(|(p, _, most)| (*most, p.static_mean_hvac_power_w / 1e3)).collect();
     let driven = extracted().filter_map(|(p, most, _)| Some(((*most)?, p.mean_hvac_power_w / 1e3))).collect();
-    let mut fronts = vec![
-        Front { name: "steady state".to_owned(), dash: "6 3", points: steady },
-        Front { name: "extracted".to_owned(), dash: "", points: driven },
-    ];
+    let mut fronts = vec![Front::steady(steady), Front::new("extracted", driven)];
     for (p, most, _) in points().filter(|(p, ..)| !p.controller.starts_with("extracted")) {
         if !fronts.iter().any(|f| f.name == p.controller) {
             let points = most.iter().map(|most| (*most, p.mean_hvac_power_w / 1e3)).collect();
-            fronts.push(Front { name: p.controller.clone(), dash: "", points });
+            fronts.push(Front::new(&p.controller, points));
         }
     }
-    let axes = Axes {
-        title: "A hot mission under causal controllers",
-        x: "largest |PMV| (15-minute mean)",
-        y: "mean HVAC power in kW",
-        x_step: 0.25,
-        told: "Mean HVAC power in kW over the largest absolute 15-minute vote of a mission, by controller",
-    };
-    fronts_svg(&fronts, &axes)
+    controllers_chart(
+        "A hot mission under causal controllers",
+        "Mean HVAC power over the largest |PMV| of the mission, under control its 15-minute mean.",
+        ["largest |PMV|", "mean HVAC power in kW"],
+        &fronts,
+    )
 }

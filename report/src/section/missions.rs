@@ -1,20 +1,20 @@
 //! Two missions in time, and what they come to with every window (paper, figures `dynamic-comparison` and
 //! `dynamic-comparison-pareto`).
 
-use cabin::celsius;
-use chrono::Timelike;
+use cabin::{Cabin, Operation, PassengerViews, celsius};
+use chrono::{DateTime, TimeDelta, Timelike, Utc};
 use chrono_tz::Tz;
+use ingest::sample::Sample;
 use simulate::TraceMinute;
-use store::MissionTrace;
+use store::{MissionTrace, TraceWindow};
 
 use crate::document::{Block, Figure, Section};
-use crate::figure::{Curve, Panel, PanelFigure, ParetoPoint, panels_svg, simulated_pareto_svg};
+use crate::figure::palette::{COOLING, HEATING, IN_TIME, Marker, REST, STEADY, SUN, Style};
+use crate::figure::{Axis, Chart, HeatFlowFigure, Mark, Panel, Ticks, chart_svg, heat_flow_svg};
+use crate::numbers;
 use crate::{ReportError, StudyReport};
 
-const BLUE: &str = "#0072b2";
-const ORANGE: &str = "#d55e00";
-const GREY: &str = "#777777";
-const DASH: &str = "5 3";
+const DASH: &str = "3 1.5";
 
 /// A part of the section before it, without a title of its own.
 pub(super) fn section(study: &StudyReport) -> Result<Option<Section>, ReportError> {
@@ -27,39 +27,126 @@ pub(super) fn section(study: &StudyReport) -> Result<Option<Section>, ReportErro
             "cold" => ("mission_cold.svg", "A cold mission"),
             _ => ("mission_hot.svg", "A hot mission"),
         };
-        let figure = figure(trace, study.note.as_deref(), study.zone);
-        section.figures.push(Figure { file, svg: panels_svg(&figure)? });
+        section.figures.push(Figure { file, svg: chart_svg(&mission(trace, study.note.as_deref(), study.zone))? });
         section = section.with(Block::Figure { file, caption });
+        if let Some(svg) = heat_flows(trace, study)? {
+            let (file, caption) = match trace.label.as_str() {
+                "cold" => ("heat_flow_cold.svg", "Heat flows of the shaded hour of the cold mission"),
+                _ => ("heat_flow_hot.svg", "Heat flows of the shaded hour of the hot mission"),
+            };
+            section.figures.push(Figure { file, svg });
+            section = section.with(Block::Figure { file, caption });
+        }
     }
-    let points = pareto_points(study);
-    if !points.is_empty() {
+    if !study.trace_windows.is_empty() {
         let (file, caption) = ("simulated_pareto.svg", "Simulated missions beside their optima");
-        section.figures.push(Figure { file, svg: simulated_pareto_svg(&points) });
+        section.figures.push(Figure { file, svg: chart_svg(&fronts(&study.trace_windows))? });
         section = section.with(Block::Figure { file, caption });
     }
     Ok(Some(section))
 }
 
-fn pareto_points(study: &StudyReport) -> Vec<ParetoPoint> {
-    let mut points = Vec::new();
-    for w in &study.trace_windows {
-        let point = |simulated, max_abs_pmv, power_w: f64| ParetoPoint {
-            mission: format!("{} mission", w.label),
-            simulated,
-            max_abs_pmv,
-            power_kw: power_w / 1e3,
-        };
-        points.push(point(false, w.static_max_abs_pmv, w.static_mean_hvac_power_w));
-        points.extend(w.max_abs_pmv_15min.map(|pmv| point(true, pmv, w.mean_hvac_power_w)));
+/// Power over the comfort that is reached, simulated and in steady state, with a box around each window.
+fn fronts(all: &[TraceWindow]) -> Chart {
+    let mut marks = Vec::new();
+    let mut windows: Vec<cabin::ComfortWindow> = Vec::new();
+    for w in all {
+        if !windows.contains(&w.window) {
+            windows.push(w.window);
+        }
     }
-    points.sort_by_key(|p| (p.mission.clone(), p.simulated));
-    points
+    let steady = |w: &TraceWindow| (w.static_max_abs_pmv, w.static_mean_hvac_power_w / 1e3);
+    let driven = |w: &TraceWindow| Some((w.max_abs_pmv_15min?, w.mean_hvac_power_w / 1e3));
+    for of in windows {
+        let rows = || all.iter().filter(|w| w.window == of);
+        let points: Vec<(f64, f64)> = rows().map(steady).chain(rows().filter_map(driven)).collect();
+        let end = |of: fn(&(f64, f64)) -> f64, pick: fn(f64, f64) -> f64| points.iter().map(of).reduce(pick);
+        if let (Some(x0), Some(x1), Some(y0), Some(y1)) =
+            (end(|p| p.0, f64::min), end(|p| p.0, f64::max), end(|p| p.1, f64::min), end(|p| p.1, f64::max))
+        {
+            marks.push(Mark::Frame { low: (x0, y0), high: (x1, y1), name: numbers::window(of) });
+        }
+    }
+    for (label, colour, markers) in
+        [("cold", COOLING, [Marker::Cross, Marker::Circle]), ("hot", HEATING, [Marker::OpenSquare, Marker::Square])]
+    {
+        let rows = || all.iter().filter(|w| w.label == label);
+        let line = |name: &str, dash, marker, mut points: Vec<(f64, f64)>| {
+            points.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let style = Style { colour, dash, width: 1.0, marker: Some(marker) };
+            Mark::Line { name: format!("{label}, {name}"), style, points }
+        };
+        marks.push(line("steady state", DASH, markers[0], rows().map(steady).collect()));
+        marks.push(line("simulated", "", markers[1], rows().filter_map(driven).collect()));
+    }
+    Chart {
+        title: "Simulated missions beside their steady-state optima".to_owned(),
+        told: "Mean HVAC power over the largest |PMV| of a mission, of a simulation its 15-minute mean; boxes: comfort windows."
+            .to_owned(),
+        columns: 1,
+        panels: vec![Panel {
+            x: Axis::new("largest |PMV|").from(0.0),
+            y: Axis::new("mean HVAC power in kW").from(0.0),
+            marks,
+            ..Panel::default()
+        }],
+        height: 150.0,
+    }
 }
 
-fn figure(trace: &MissionTrace, note: Option<&str>, zone: Tz) -> PanelFigure {
+/// The segment that the paper shows of its missions (figures `single-scenario`: 17:35 and 15:50), of others the one of most
+/// power.
+fn shown_segment(trace: &MissionTrace, zone: Tz) -> Option<usize> {
+    let of_paper_h = if trace.label == "cold" { 17.0 + 35.0 / 60.0 } else { 15.0 + 50.0 / 60.0 };
+    let segments = trace.segments.iter().enumerate();
+    if trace.of_paper {
+        let off = |(sample, _): &(Sample, Operation)| (clock_h(sample.segment.start, zone) - of_paper_h).abs();
+        return segments.min_by(|a, b| off(a.1).total_cmp(&off(b.1))).map(|(i, _)| i);
+    }
+    segments.max_by(|a, b| a.1.1.hvac_power_w().total_cmp(&b.1.1.hvac_power_w())).map(|(i, _)| i)
+}
+
+fn heat_flows(trace: &MissionTrace, study: &StudyReport) -> Result<Option<String>, ReportError> {
+    let Some((sample, o)) = shown_segment(trace, study.zone).and_then(|i| trace.segments.get(i)) else {
+        return Ok(None);
+    };
+    let (d, views) = (&sample.disturbances, PassengerViews::new(&study.vehicle));
+    let cabin = Cabin::new(&study.vehicle, &views, d);
+    let start = sample.segment.start.with_timezone(&study.zone);
+    let end = start + TimeDelta::seconds(sample.segment.duration_s.into());
+    let figure = HeatFlowFigure {
+        title: format!("Heat flows of an hour, {} at PMV {}", trace.design, numbers::window(trace.window)),
+        description: format!(
+            "{} to {}; {:.1} passengers, {:.1} % of the doors open, shadow fraction {:.2}, PMV {}.",
+            start.format("%-d %B %Y, %H:%M"),
+            end.format("%H:%M"),
+            d.passengers,
+            100.0 * d.door_open_fraction,
+            d.shadow_fraction,
+            numbers::signed(o.pmv, 2)
+        ),
+        ambient_k: d.ambient_temperature_k,
+        temperatures: o.temperatures,
+        flows: cabin.flows(&o.temperatures, o.devices.air_curtain, o.air_unit_heat_w, o.radiant_heater_power_w),
+        air_unit_power_w: o.air_unit_power_w,
+    };
+    heat_flow_svg(&figure).map(Some)
+}
+
+/// Hours since the local midnight before.
+pub(super) fn clock_h(start: DateTime<Utc>, zone: Tz) -> f64 {
+    f64::from(start.with_timezone(&zone).num_seconds_from_midnight()) / 3600.0
+}
+
+/// What an axis of such hours is called.
+pub(super) fn clock_label(start: DateTime<Utc>, zone: Tz) -> String {
+    format!("local time on {} ({zone})", start.with_timezone(&zone).format("%-d %B %Y"))
+}
+
+fn mission(trace: &MissionTrace, note: Option<&str>, zone: Tz) -> Chart {
     let segments = &trace.segments;
     let first = segments.first().map(|(sample, _)| &sample.segment);
-    let first_h = first.map_or(0.0, |s| f64::from(s.start.with_timezone(&zone).num_seconds_from_midnight()) / 3600.0);
+    let first_h = first.map_or(0.0, |s| clock_h(s.start, zone));
     let segment_h = first.map_or(1.0, |s| f64::from(s.duration_s) / 3600.0);
     let end_h = first_h + segment_h * segments.len() as f64;
     let minutes = |value: &dyn Fn(&TraceMinute) -> f64| -> Vec<(f64, f64)> {
@@ -69,81 +156,92 @@ fn figure(trace: &MissionTrace, note: Option<&str>, zone: Tz) -> PanelFigure {
         let of = |i: usize| [0.0, 1.0].map(|end| (first_h + segment_h * (i as f64 + end), value(i)));
         (0..segments.len()).flat_map(of).collect()
     };
-    let curve = |name: &str, colour, dash, width, points| Curve { name: name.to_owned(), colour, dash, width, points };
-    let panel = |label: &str, curves| Panel { label: label.to_owned(), curves };
-    let flat = |value: f64| vec![(first_h, value), (end_h, value)];
+    let line = |name: &str, colour, dash, width, points| Mark::Line {
+        name: name.to_owned(),
+        style: Style::line(colour, dash, width),
+        points,
+    };
+    let in_time = |width, points| line("in time", IN_TIME, "", width, points);
+    let steady = |points| line("hourly mean, steady state", STEADY, DASH, 1.0, points);
+    let panel = |label: &str, marks| Panel {
+        x: Axis::default().from(first_h).to(end_h).with(Ticks::None),
+        y: Axis::new(label),
+        marks,
+        ..Panel::default()
+    };
     let (d, o) = (|i: usize| &segments[i].0.disturbances, |i: usize| &segments[i].1);
     let window = trace.window;
-    let panels = vec![
+    let limits = [(window.pmv_max(), "comfort window"), (window.pmv_min(), "")]
+        .map(|(at, name)| Mark::Limit { at, name: name.to_owned() });
+    let power = |of: fn(&TraceMinute) -> f64| minutes(&|m| of(m) / 1e3);
+    let mut panels = vec![
         panel(
             "ambient °C",
             vec![
-                curve("in time", BLUE, "", 1.4, minutes(&|m| celsius(m.ambient_k))),
-                curve("segment mean", ORANGE, DASH, 1.4, steps(&|i| celsius(d(i).ambient_temperature_k))),
+                in_time(0.9, minutes(&|m| celsius(m.ambient_k))),
+                steady(steps(&|i| celsius(d(i).ambient_temperature_k))),
             ],
         ),
         panel(
-            "irradiance W/m²",
+            "sun W/m²",
             vec![
-                curve("direct normal", BLUE, DASH, 1.4, steps(&|i| d(i).dni_w_m2)),
-                curve("diffuse horizontal", ORANGE, DASH, 1.4, steps(&|i| d(i).dhi_w_m2)),
+                line("direct normal", SUN, "", 0.9, steps(&|i| d(i).dni_w_m2)),
+                line("diffuse horizontal", REST, "1.5 1.5", 1.0, steps(&|i| d(i).dhi_w_m2)),
+            ],
+        ),
+        panel("passengers", vec![in_time(0.7, minutes(&|m| m.passengers)), steady(steps(&|i| d(i).passengers))]),
+        panel(
+            "doors %",
+            vec![
+                in_time(0.4, minutes(&|m| 100.0 * m.door_open_fraction)),
+                steady(steps(&|i| 100.0 * d(i).door_open_fraction)),
             ],
         ),
         panel(
-            "passengers",
+            "cabin °C",
             vec![
-                curve("in time", BLUE, "", 1.0, minutes(&|m| m.passengers)),
-                curve("segment mean", ORANGE, DASH, 1.4, steps(&|i| d(i).passengers)),
+                in_time(0.7, minutes(&|m| celsius(m.cabin_k))),
+                steady(steps(&|i| celsius(o(i).temperatures.cabin_k))),
             ],
         ),
         panel(
-            "doors open %",
+            "shell °C",
             vec![
-                curve("minute mean", BLUE, "", 0.7, minutes(&|m| 100.0 * m.door_open_fraction)),
-                curve("segment mean", ORANGE, DASH, 1.4, steps(&|i| 100.0 * d(i).door_open_fraction)),
-            ],
-        ),
-        panel(
-            "temperature °C",
-            vec![
-                curve("cabin", BLUE, "", 1.2, minutes(&|m| celsius(m.cabin_k))),
-                curve("shell inside", GREY, "", 1.2, minutes(&|m| celsius(m.shell_inside_k))),
-                curve("steady state", ORANGE, DASH, 1.4, steps(&|i| celsius(o(i).temperatures.cabin_k))),
-                curve("", ORANGE, DASH, 1.4, steps(&|i| celsius(o(i).temperatures.shell_inside_k))),
+                in_time(0.9, minutes(&|m| celsius(m.shell_inside_k))),
+                steady(steps(&|i| celsius(o(i).temperatures.shell_inside_k))),
             ],
         ),
         panel(
             "PMV",
-            vec![
-                curve("minute mean", GREY, "", 0.8, minutes(&|m| m.pmv)),
-                curve("15-minute mean", BLUE, "", 1.4, minutes(&|m| m.pmv_15min)),
-                curve("steady state", ORANGE, DASH, 1.4, steps(&|i| o(i).pmv)),
-                curve("window", GREY, "1 3", 1.2, flat(window.pmv_min())),
-                curve("", GREY, "1 3", 1.2, flat(window.pmv_max())),
-            ],
+            [
+                line("minute mean", REST, "", 0.5, minutes(&|m| m.pmv)),
+                in_time(0.9, minutes(&|m| m.pmv_15min)),
+                steady(steps(&|i| o(i).pmv)),
+            ]
+            .into_iter()
+            .chain(limits)
+            .collect(),
         ),
-        panel(
-            "HVAC power kW",
-            vec![
-                curve("simulated", BLUE, "", 1.0, minutes(&|m| m.hvac_power_w / 1e3)),
-                curve("steady state", ORANGE, DASH, 1.4, steps(&|i| o(i).hvac_power_w() / 1e3)),
-            ],
-        ),
+        panel("HVAC kW", vec![in_time(0.6, power(|m| m.hvac_power_w)), steady(steps(&|i| o(i).hvac_power_w() / 1e3))]),
     ];
+    if let Some(shown) = shown_segment(trace, zone) {
+        let from = first_h + segment_h * shown as f64;
+        panels.iter_mut().for_each(|p| p.marks.insert(0, Mark::Shade { from, to: from + segment_h }));
+    }
+    if let (Some(last), Some(first)) = (panels.last_mut(), first) {
+        last.x = Axis::new(clock_label(first.start, zone)).from(first_h).to(end_h).with(Ticks::Clock);
+    }
     let of_paper =
         if trace.of_paper { "named like the mission that the paper shows" } else { "not a mission of the paper" };
-    PanelFigure {
-        title: format!(
-            "A {} mission with {} at PMV {} … {}",
-            trace.label,
-            trace.design,
-            window.pmv_min(),
-            window.pmv_max()
+    let note = note.map_or_else(String::new, |note| format!(" {note}"));
+    Chart {
+        title: format!("A {} mission with {} at PMV {}", trace.label, trace.design, numbers::window(window)),
+        told: format!(
+            "{}; {of_paper}. PMV in time is the 15-minute mean.{note}",
+            first.map_or("", |s| s.mission.as_str())
         ),
-        caption: format!("{}; {of_paper}", first.map_or("", |s| s.source_path.as_str())),
-        note: note.unwrap_or_default().to_owned(),
-        hours: [first_h, end_h],
-        axis: format!("local time in h ({zone})"),
+        columns: 1,
         panels,
+        height: 38.0,
     }
 }

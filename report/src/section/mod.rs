@@ -18,6 +18,7 @@ mod parts;
 mod quality;
 mod reduction;
 mod repeat;
+mod scenarios;
 mod setpoints;
 mod simulation;
 mod simulation_classes;
@@ -25,6 +26,7 @@ mod sureness;
 mod title;
 
 pub use findings::{PaperFinding, Verdict, paper_findings};
+pub use setpoints::nearest_windows;
 
 use crate::document::{Block, Section, Span};
 use crate::numbers::month;
@@ -34,7 +36,8 @@ use crate::{ReportError, StudyReport};
 pub(crate) fn all(study: &StudyReport) -> Result<Vec<Section>, ReportError> {
     let sections = [
         Some(title::section(study)),
-        Some(pareto::section(study)),
+        Some(pareto::section(study)?),
+        scenarios::section(study)?,
         Some(annual::section(study)),
         reduction::section(study),
         sureness::section(study),
@@ -46,7 +49,7 @@ pub(crate) fn all(study: &StudyReport) -> Result<Vec<Section>, ReportError> {
         missions::section(study)?,
         simulation_classes::section(study),
         setpoints::section(study)?,
-        control::section(study),
+        control::section(study)?,
         control_mission::section(study)?,
         control_classes::section(study),
         Some(designs::section(study)),

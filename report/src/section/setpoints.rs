@@ -1,21 +1,19 @@
 //! What a controller on board can learn from the optima (paper, figures `temperature-setpoints` and `aircurtain-setpoint`).
 
-use cabin::OperatingMode;
+use cabin::{ComfortWindow, OperatingMode};
 use setpoints::{CurtainThreshold, Profile, published};
 use store::{Cloud, CloudPoint, SetpointRow};
 
 use crate::document::{Block, DataTable, Figure, Section, Table};
-use crate::figure::{CloudFigure, CloudPanel, Curve, PointCloud, clouds_svg};
-use crate::numbers::{optional, percent, text, window};
+use crate::figure::palette::{BLACK, COOLING, HEATING, REST, Style};
+use crate::figure::{Axis, Chart, Mark, Panel, chart_svg};
+use crate::numbers::{optional, percent, signed, text, window};
 use crate::{ReportError, StudyReport};
 
-const WARM: &str = "#d55e00";
-const COLD: &str = "#0072b2";
-const GREY: &str = "#999999";
-const BLACK: &str = "#000000";
-const DASH: &str = "6 3";
-/// Published setpoints beside the clouds: name, colours of heating and cooling. The paper's second is not public.
-const SHOWN: [(&str, &str); 3] = [("vdv-comfort", "#785ef0"), ("vbz-18", "#009e73"), ("vecto", "#b8860b")];
+const DASH: &str = "3 1.5";
+/// Published setpoints beside the clouds: name, colour and dashes. The paper's second is not public.
+const SHOWN: [(&str, &str, &str); 3] =
+    [("vdv-comfort", "#cc79a7", ""), ("vbz-18", "#009e73", DASH), ("vecto", "#8a6d00", "1.5 1.5")];
 
 pub(super) fn section(study: &StudyReport) -> Result<Option<Section>, ReportError> {
     if study.setpoints.is_empty() {
@@ -30,11 +28,11 @@ pub(super) fn section(study: &StudyReport) -> Result<Option<Section>, ReportErro
     );
     let Some(design) = study.clouds.first().map(|c| &c.design) else { return Ok(Some(section)) };
     let (file, caption) = ("temperature_setpoints.svg", "Optima with the extracted setpoints, and published ones");
-    section.figures.push(Figure { file, svg: clouds_svg(&profiles(study, design))? });
+    section.figures.push(Figure { file, svg: chart_svg(&profiles(study, design))? });
     section = section.with(Block::Figure { file, caption });
     if let Some(figure) = curtains(study, design) {
         let (file, caption) = ("aircurtain_setpoint.svg", "When the air curtains run, with their thresholds");
-        section.figures.push(Figure { file, svg: clouds_svg(&figure)? });
+        section.figures.push(Figure { file, svg: chart_svg(&figure)? });
         section = section.with(Block::Figure { file, caption });
     }
     let columns = [
@@ -51,6 +49,18 @@ pub(super) fn section(study: &StudyReport) -> Result<Option<Section>, ReportErro
     ];
     let rows = study.setpoints.iter().filter(|row| row.design == *design).map(row).collect();
     Ok(Some(section.with(Block::Table(Table::new(&["PMV"], &columns, rows)))))
+}
+
+/// The paper's three windows of its figure `temperature-setpoints`, or those among these that are nearest.
+#[must_use]
+pub fn nearest_windows(windows: &[ComfortWindow]) -> Vec<ComfortWindow> {
+    let mut nearest = Vec::new();
+    for limit in [0.25, 0.625, 1.0] {
+        let off = |w: &ComfortWindow| (w.pmv_limit() - limit).abs();
+        let found = windows.iter().copied().min_by(|a, b| off(a).total_cmp(&off(b)));
+        nearest.extend(found.filter(|w| !nearest.contains(w)));
+    }
+    nearest
 }
 
 fn row(of: &SetpointRow) -> Vec<String> {
@@ -87,97 +97,100 @@ fn row(of: &SetpointRow) -> Vec<String> {
 }
 
 /// Clouds with their profiles, and published setpoints in a panel of their own.
-fn profiles(study: &StudyReport, design: &str) -> CloudFigure {
+fn profiles(study: &StudyReport, design: &str) -> Chart {
     let ambient = || study.clouds.iter().flat_map(|c| c.points.iter()).map(|p| p.ambient_temperature_c);
     let from_c = ambient().fold(f64::INFINITY, f64::min).floor();
     let to_c = ambient().fold(f64::NEG_INFINITY, f64::max).ceil();
-    let curve = |name: &str, colour, dash, of: &setpoints::Curve, [from_c, to_c]: [f64; 2]| {
+    let line = |name: &str, style: Style, of: &setpoints::Curve, [from_c, to_c]: [f64; 2]| {
         let points = (0..=((to_c - from_c).max(0.0) * 4.0) as i64).map(|i| from_c + i as f64 / 4.0);
-        let points = points.map(|t| (t, of.at(t))).collect();
-        Curve { name: name.to_owned(), colour, dash, width: 1.8, points }
+        Mark::Line { name: name.to_owned(), style, points: points.map(|t| (t, of.at(t))).collect() }
     };
-    let panel = |cloud: &Cloud| {
+    let cabin = || study.clouds.iter().flat_map(|c| c.points.iter()).map(|p| p.cabin_temperature_c);
+    let [low_c, high_c] = [(f64::min as fn(f64, f64) -> f64, f64::INFINITY), (f64::max, f64::NEG_INFINITY)]
+        .map(|(f, e)| cabin().fold(e, f));
+    // The same axes on all panels.
+    let panel = |title: String, marks| Panel {
+        title,
+        x: Axis::new("ambient °C").from(from_c).to(to_c),
+        y: Axis::new("cabin °C").from((low_c / 5.0).floor() * 5.0).to((high_c / 5.0).ceil() * 5.0),
+        marks,
+    };
+    let of_cloud = |cloud: &Cloud| {
         let row = study.setpoints.iter().find(|row| row.design == design && row.window == cloud.window);
         let profile = |name, dash, profile: &Result<Profile, String>| {
-            profile.as_ref().ok().map(|p| curve(name, BLACK, dash, &p.curve, p.curve.valid_c))
+            let style = Style::line(BLACK, dash, 1.2);
+            profile.as_ref().ok().map(|p| line(name, style, &p.curve, p.curve.valid_c))
         };
-        let curves = row.map(|row| {
-            let heating = profile("heating profile", "", &row.setpoints.heating);
-            [heating, profile("cooling profile", DASH, &row.setpoints.cooling)].into_iter().flatten().collect()
-        });
-        let temperatures = |p: &CloudPoint| (p.ambient_temperature_c, p.cabin_temperature_c);
-        CloudPanel {
-            title: format!("PMV {}", window(cloud.window)),
-            clouds: by_mode(cloud, temperatures),
-            curves: curves.unwrap_or_default(),
+        let mut marks = by_mode(cloud, |p| (p.ambient_temperature_c, p.cabin_temperature_c));
+        if let Some(row) = row {
+            marks.extend(profile("heating profile", "", &row.setpoints.heating));
+            marks.extend(profile("cooling profile", DASH, &row.setpoints.cooling));
         }
+        panel(format!("PMV {}", window(cloud.window)), marks)
     };
-    let mut panels: Vec<CloudPanel> = study.clouds.iter().map(panel).collect();
+    let mut panels: Vec<Panel> = study.clouds.iter().map(of_cloud).collect();
     let known = published();
-    let of = |(name, colour): &(&str, &'static str)| {
+    let of = |(name, colour, dash): &(&str, &'static str, &'static str)| {
+        let style = Style::line(colour, dash, 1.2);
         let found = known.iter().find(|p| p.name == *name);
         found.map_or_else(Vec::new, |p| {
-            let mut curves = vec![curve(name, *colour, "", &p.heating, [from_c, to_c])];
+            let mut lines = vec![line(name, style, &p.heating, [from_c, to_c])];
             if !p.is_single() {
-                curves.push(curve("", *colour, DASH, &p.cooling, [p.cooling.valid_c[0].max(from_c), to_c]));
+                lines.push(line("", style, &p.cooling, [p.cooling.valid_c[0].max(from_c), to_c]));
             }
-            curves
+            lines
         })
     };
-    panels.push(CloudPanel {
-        title: "published".to_owned(),
-        clouds: Vec::new(),
-        curves: SHOWN.iter().flat_map(of).collect(),
-    });
-    CloudFigure {
+    panels.push(panel("published".to_owned(), SHOWN.iter().flat_map(of).collect()));
+    Chart {
         title: format!("Optimal cabin temperatures of {design} and setpoints"),
-        caption: "Each dot is a sample; profiles are solid for heating, dashed for cooling.".to_owned(),
-        axes: ["ambient temperature in °C", "cabin temperature in °C"],
+        told: "Each dot is a sample, by what the air unit does.".to_owned(),
+        columns: 2,
         panels,
-        size: [205.0, 240.0],
+        height: 92.0,
     }
 }
 
-fn by_mode(cloud: &Cloud, place: fn(&CloudPoint) -> (f64, f64)) -> Vec<PointCloud> {
-    let of = |(name, colour, mode): (&'static str, &'static str, OperatingMode)| PointCloud {
-        name,
+fn by_mode(cloud: &Cloud, place: fn(&CloudPoint) -> (f64, f64)) -> Vec<Mark> {
+    let of = |(name, colour, mode): (&str, &'static str, OperatingMode)| Mark::Dots {
+        name: name.to_owned(),
         colour,
         points: cloud.points.iter().filter(|p| p.mode == mode).map(place).collect(),
     };
-    let passive = ("at rest", GREY, OperatingMode::Passive);
-    [passive, ("heats", WARM, OperatingMode::Heating), ("cools", COLD, OperatingMode::Cooling)].map(of).to_vec()
+    let passive = ("at rest", REST, OperatingMode::Passive);
+    [passive, ("heating", HEATING, OperatingMode::Heating), ("cooling", COOLING, OperatingMode::Cooling)].map(of).into()
 }
 
 /// Optima by heat of the air unit and temperature difference, with the thresholds; `None` for a design without curtains.
-fn curtains(study: &StudyReport, design: &str) -> Option<CloudFigure> {
+fn curtains(study: &StudyReport, design: &str) -> Option<Chart> {
     let cloud = study.clouds.last()?;
     let row = study.setpoints.iter().find(|row| row.design == design && row.window == cloud.window)?;
     if row.setpoints.curtains.is_empty() {
         return None;
     }
     let place = |p: &CloudPoint| (p.air_unit_heat_w / 1e3, p.cabin_temperature_c - p.ambient_temperature_c);
-    let of = |name, colour, runs: bool| {
+    let of = |name: &str, colour, runs: bool| {
         let active = cloud.points.iter().filter(|p| p.mode != OperatingMode::Passive && p.air_curtain == runs);
-        PointCloud { name, colour, points: active.map(place).collect() }
+        Mark::Dots { name: name.to_owned(), colour, points: active.map(place).collect() }
     };
-    let heat = || cloud.points.iter().map(|p| p.air_unit_heat_w / 1e3);
-    let ends = [heat().fold(0.0, f64::min), heat().fold(0.0, f64::max)];
-    let line = |t: &CurtainThreshold| {
-        let (sign, end) = if t.mode == OperatingMode::Cooling { (-1.0, ends[0]) } else { (1.0, ends[1]) };
-        let threshold_k = sign * t.of_optima?.value;
-        let points = vec![(0.0, threshold_k), (end, threshold_k)];
-        Some(Curve { name: "threshold".to_owned(), colour: BLACK, dash: DASH, width: 1.6, points })
+    let limit = |t: &CurtainThreshold| {
+        let (sign, mode) = if t.mode == OperatingMode::Cooling { (-1.0, "cooling") } else { (1.0, "heating") };
+        let at = sign * t.of_optima?.value;
+        Some(Mark::Limit { at, name: format!("{mode}: {} K", signed(at, 1)) })
     };
-    Some(CloudFigure {
+    let mut marks = vec![of("curtains off", REST, false), of("curtains on", "#009e73", true)];
+    marks.extend(row.setpoints.curtains.iter().filter_map(limit));
+    Some(Chart {
         title: format!("Air curtains of {design} at PMV {}", window(cloud.window)),
-        caption: "Each dot is a sample in which the air unit heats or cools.".to_owned(),
-        axes: ["heat of the air unit in kW", "cabin over ambient temperature in K"],
-        panels: vec![CloudPanel {
-            title: String::new(),
-            clouds: vec![of("curtains off", GREY, false), of("curtains on", "#009e73", true)],
-            curves: row.setpoints.curtains.iter().filter_map(line).collect(),
+        told: "Each dot is a sample in which the air unit heats or cools; dotted: thresholds.".to_owned(),
+        columns: 1,
+        panels: vec![Panel {
+            x: Axis::new("heat of the air unit in kW"),
+            y: Axis::new("cabin over ambient temperature in K"),
+            marks,
+            ..Panel::default()
         }],
-        size: [560.0, 300.0],
+        height: 140.0,
     })
 }
 

@@ -1,0 +1,178 @@
+//! What figures are drawn on: paths and texts in points of print, 85 mm wide, as SVG that every renderer draws alike.
+//!
+//! No style sheets, markers, clip paths or ids: renderers differ in them, and pages that inline several figures would mix them up.
+
+use minijinja::{AutoEscape, Environment, Value, context};
+
+use crate::ReportError;
+
+const TEMPLATE: &str = include_str!("../../templates/figure.svg");
+
+/// Width of a column of print, 85 mm, in points.
+pub(super) const WIDTH: f64 = 241.0;
+/// Size of all texts but the title: 7 pt is the least that journals print.
+pub(super) const FONT: f64 = 7.5;
+pub(super) const TITLE_FONT: f64 = 8.5;
+pub(super) const INK: &str = "#1a1a1a";
+pub(super) const PALE_INK: &str = "#555555";
+/// Pixels that a point is shown with where nobody says how wide.
+const SHOWN: f64 = 3.0;
+
+/// Where a text stands at its place.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Anchor {
+    Start,
+    Middle,
+    End,
+}
+
+impl Anchor {
+    fn word(self) -> &'static str {
+        match self {
+            Self::Start => "start",
+            Self::Middle => "middle",
+            Self::End => "end",
+        }
+    }
+}
+
+/// How a line is drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Pen {
+    pub colour: &'static str,
+    pub width: f64,
+    /// Dashes as in SVG; empty for a solid line.
+    pub dash: &'static str,
+}
+
+/// A drawing that grows.
+#[derive(Debug, Default)]
+pub(super) struct Canvas(Vec<Value>);
+
+impl Canvas {
+    /// A line along a path.
+    pub fn line(&mut self, d: &str, pen: Pen) {
+        let Pen { colour, width, dash } = pen;
+        self.0.push(context! { d, fill => "none", stroke => colour, stroke_width => coordinate(width), dash });
+    }
+
+    /// Dots along a path of pieces without length.
+    pub fn dots(&mut self, d: &str, colour: &str, width: f64) {
+        self.0.push(
+            context! { d, fill => "none", stroke => colour, stroke_width => coordinate(width), dash => "", round => true },
+        );
+    }
+
+    /// An area within a path.
+    pub fn area(&mut self, d: &str, fill: &str, opacity: f64) {
+        let fill_opacity = if opacity < 1.0 { coordinate(opacity) } else { String::new() };
+        self.0.push(context! { d, fill, fill_opacity });
+    }
+
+    /// An area with an edge.
+    pub fn edged(&mut self, d: &str, fill: &str, pen: Pen) {
+        let Pen { colour, width, dash } = pen;
+        self.0.push(context! { d, fill, stroke => colour, stroke_width => coordinate(width), dash });
+    }
+
+    pub fn text(&mut self, (x, y): (f64, f64), text: &str, anchor: Anchor) {
+        self.word((x, y), text, anchor, Word::default());
+    }
+
+    pub fn word(&mut self, (x, y): (f64, f64), text: &str, anchor: Anchor, word: Word) {
+        if text.is_empty() {
+            return;
+        }
+        let Word { size, bold, turned, fill, halo } = word;
+        let (x, y, size, anchor) = (coordinate(x), coordinate(y), coordinate(size), anchor.word());
+        // Two texts, as renderers differ in what they paint first.
+        let (x, y, size) = (&x, &y, &size);
+        if halo {
+            self.0.push(context! { text, x, y, size, bold, turned, anchor, fill => "#ffffff", halo });
+        }
+        self.0.push(context! { text, x, y, size, bold, turned, anchor, fill });
+    }
+
+    /// The drawing as SVG of a height, with a title and words for those who cannot see it.
+    pub fn svg(self, height: f64, title: &str, told: &str) -> Result<String, ReportError> {
+        let mut environment = Environment::new();
+        environment.set_auto_escape_callback(|_| AutoEscape::Html);
+        environment.add_template("figure.svg", TEMPLATE)?;
+        let content = context! {
+            title, told, shapes => self.0, width => WIDTH, height => coordinate(height),
+            shown_width => coordinate(SHOWN * WIDTH), shown_height => coordinate(SHOWN * height),
+        };
+        Ok(environment.get_template("figure.svg")?.render(content)?)
+    }
+}
+
+/// How a text looks.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Word {
+    pub size: f64,
+    pub bold: bool,
+    /// Reads from below to above.
+    pub turned: bool,
+    pub fill: &'static str,
+    /// White around it, where it stands on lines.
+    pub halo: bool,
+}
+
+impl Default for Word {
+    fn default() -> Self {
+        Self { size: FONT, bold: false, turned: false, fill: INK, halo: false }
+    }
+}
+
+/// A path that begins anew wherever a value is not a number.
+pub(super) fn path(points: impl Iterator<Item = (f64, f64)>) -> String {
+    let (mut d, mut pen_down) = (String::new(), false);
+    for (x, y) in points {
+        if x.is_finite() && y.is_finite() {
+            d.push_str(if pen_down { " " } else { "M" });
+            d.push_str(&coordinate(x));
+            d.push(' ');
+            d.push_str(&coordinate(y));
+        }
+        pen_down = x.is_finite() && y.is_finite();
+    }
+    d
+}
+
+/// A rectangle from one corner to the opposite one.
+pub(super) fn rectangle((x0, y0): (f64, f64), (x1, y1): (f64, f64)) -> String {
+    format!("M{0} {1}H{2}V{3}H{0}Z", coordinate(x0), coordinate(y0), coordinate(x1), coordinate(y1))
+}
+
+/// Two decimals, so that a platform's arithmetic cannot change bytes.
+pub(super) fn coordinate(value: f64) -> String {
+    let text = format!("{:.2}", value + 0.0);
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// How wide a text is, about: letters of Helvetica, rounded up to those of wider fonts that stand in for it.
+pub(super) fn width_of(text: &str, size: f64) -> f64 {
+    let of = |c: char| match c {
+        'i' | 'j' | 'l' | 'I' | '.' | ',' | ':' | ';' | '|' | '\'' | '!' => 0.3,
+        'f' | 't' | 'r' | ' ' | '(' | ')' | '-' | '/' => 0.38,
+        'm' | 'M' | 'W' | '%' | '…' => 0.95,
+        'A'..='Z' | 'w' | '+' | '±' | '−' | '=' => 0.7,
+        _ => 0.58,
+    };
+    size * text.chars().map(of).sum::<f64>()
+}
+
+/// The lines of a text that are at most so wide.
+pub(super) fn wrapped(text: &str, size: f64, width: f64) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if width_of(line, size) + width_of(" ", size) + width_of(word, size) <= width => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}

@@ -1,0 +1,113 @@
+//! What the hours of the study are like (paper, figure `scenarios-overview`), and what passengers vote in them (figure
+//! `yearly-pmv-range-comparison`).
+
+use cabin::ComfortWindow;
+use store::{DisturbanceBin, VoteBin};
+
+use super::setpoints::nearest_windows;
+use crate::document::{Block, Figure, Section};
+use crate::figure::palette::{COOLING, HEATING, IN_TIME, SUN, Style};
+use crate::figure::{Axis, Chart, Mark, Panel, Ticks, chart_svg};
+use crate::numbers::window;
+use crate::{ReportError, StudyReport};
+
+pub(super) fn section(study: &StudyReport) -> Result<Option<Section>, ReportError> {
+    if study.disturbance_bins.is_empty() {
+        return Ok(None);
+    }
+    let mut section = Section::new("The hours of the study");
+    for (file, caption, chart) in [
+        ("scenarios_overview.svg", "Disturbances of all samples", Some(disturbances(&study.disturbance_bins))),
+        ("pmv_range.svg", "Votes at the optima", votes(study)),
+    ] {
+        if let Some(chart) = chart {
+            section.figures.push(Figure { file, svg: chart_svg(&chart)? });
+            section = section.with(Block::Figure { file, caption });
+        }
+    }
+    Ok(Some(section))
+}
+
+/// The outline of bins that follow each other; those that are missing hold nothing.
+fn outline(bins: impl Iterator<Item = ([f64; 2], f64)>) -> Vec<(f64, f64)> {
+    let mut points: Vec<(f64, f64)> = Vec::new();
+    for ([from, to], height) in bins {
+        match points.last() {
+            Some(&(end, _)) if end < from - 1e-9 => points.extend([(end, 0.0), (from, 0.0)]),
+            None => points.push((from, 0.0)),
+            _ => {}
+        }
+        points.extend([(from, height), (to, height)]);
+    }
+    if let Some(&(end, _)) = points.last() {
+        points.push((end, 0.0));
+    }
+    points
+}
+
+fn disturbances(bins: &[DisturbanceBin]) -> Chart {
+    let of = |quantity: &str, scale: f64| {
+        let rows = bins.iter().filter(|b| b.quantity == quantity);
+        outline(rows.map(|b| (b.ends.map(|end| end * scale), b.samples as f64)))
+    };
+    let filled = |name: &str, style: Style, points: Vec<(f64, f64)>| {
+        let band = points.iter().map(|(x, y)| (*x, [0.0, *y])).collect();
+        [Mark::Band { style, points: band }, Mark::Line { name: name.to_owned(), style, points }]
+    };
+    let plain = Style::line(IN_TIME, "", 0.8);
+    let panel = |x: Axis, marks: Vec<Mark>| Panel { x, y: Axis::default().from(0.0), marks, ..Panel::default() };
+    let one = |quantity: &str, scale, x: Axis| panel(x, filled("", plain, of(quantity, scale)).into());
+    let sun = [
+        filled("direct normal irradiance", Style::line(SUN, "", 0.9), of("dni_w_m2", 1.0)),
+        filled("diffuse horizontal", Style::line(IN_TIME, "2 1.2", 0.9), of("dhi_w_m2", 1.0)),
+    ];
+    // A month is in the middle of its bin.
+    let months =
+        outline(bins.iter().filter(|b| b.quantity == "month").map(|b| (b.ends.map(|end| end - 0.5), b.samples as f64)));
+    Chart {
+        title: "The hours of the study".to_owned(),
+        told: "How many samples lie where.".to_owned(),
+        columns: 2,
+        panels: vec![
+            one("ambient_temperature_c", 1.0, Axis::new("ambient temperature in °C")),
+            panel(Axis::new("irradiance in W/m²").from(0.0), sun.into_iter().flatten().collect()),
+            one("passengers", 1.0, Axis::new("passengers").from(0.0)),
+            panel(Axis::new("month").from(0.5).to(12.5).with(Ticks::Months), filled("", plain, months).into()),
+            one("door_open_fraction", 100.0, Axis::new("doors open in %").from(0.0)),
+            one("local_hour", 1.0, Axis::new("local time").from(0.0).to(24.0).with(Ticks::Clock)),
+        ],
+        height: 58.0,
+    }
+}
+
+/// Votes of the best equipped design in the paper's three windows, or those that are nearest; none where no window is solved.
+fn votes(study: &StudyReport) -> Option<Chart> {
+    let (design, _) = study.cheapest(study.shown_window()?)?;
+    let rows: Vec<&VoteBin> = study.vote_bins.iter().filter(|b| b.design == design).collect();
+    let mut windows: Vec<ComfortWindow> = Vec::new();
+    for row in &rows {
+        if !windows.contains(&row.window) {
+            windows.push(row.window);
+        }
+    }
+    let looks = [(COOLING, ""), ("#009e73", "3 1.5"), (HEATING, "1.2 1.2")];
+    let mut marks = Vec::new();
+    for (of, (colour, dash)) in nearest_windows(&windows).into_iter().zip(looks) {
+        let bins = rows.iter().filter(|b| b.window == of).map(|b| (b.ends, 100.0 * b.weight));
+        let style = Style::line(colour, dash, 1.1);
+        marks.push(Mark::Line { name: format!("PMV {}", window(of)), style, points: outline(bins) });
+    }
+    (!marks.is_empty()).then(|| Chart {
+        title: format!("What passengers vote at the optima of {design}"),
+        told: "Share of the year by predicted mean vote, in bins of a tenth; a vote at a limit counts inside."
+            .to_owned(),
+        columns: 1,
+        panels: vec![Panel {
+            x: Axis::new("PMV"),
+            y: Axis::new("share of the year in %").from(0.0),
+            marks,
+            ..Panel::default()
+        }],
+        height: 120.0,
+    })
+}
