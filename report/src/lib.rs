@@ -28,7 +28,7 @@ pub struct ReportFile {
 }
 
 /// The names of all files that a report can have.
-pub const FILES: [&str; 32] = [
+pub const FILES: [&str; 36] = [
     "report.md",
     "aircurtain_setpoint.svg",
     "annual_average.csv",
@@ -42,15 +42,19 @@ pub const FILES: [&str; 32] = [
     "control_pareto.svg",
     "curtain_threshold.csv",
     "data_quality.csv",
+    "data_sample.svg",
     "design_interval.csv",
     "heat_flow_cold.svg",
     "heat_flow_hot.svg",
     "left_out.csv",
     "mission_cold.svg",
     "mission_hot.svg",
+    "model_approximations.svg",
+    "model_parameters.svg",
     "month_spread.csv",
     "monthly_average.csv",
     "paper_comparison.csv",
+    "paper_numbers.csv",
     "pareto.svg",
     "pmv_range.svg",
     "scenarios_overview.svg",

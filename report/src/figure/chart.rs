@@ -93,16 +93,14 @@ pub(crate) fn chart_svg(chart: &Chart) -> Result<String, ReportError> {
     y = legend(&mut canvas, chart, y);
     let columns = chart.columns.max(1);
     let column_width = (WIDTH - 2.0 * MARGIN) / columns as f64;
+    // Panels above each other have equal margins.
+    let margin = |column: usize| {
+        let of_column = chart.panels.iter().skip(column).step_by(columns);
+        of_column.map(|panel| left_margin(panel, &scales(panel, chart, column_width).1)).fold(0.0, f64::max)
+    };
+    let margins: Vec<f64> = (0..columns).map(margin).collect();
     for row in chart.panels.chunks(columns) {
         let of_row: Vec<(Scale, Scale)> = row.iter().map(|panel| scales(panel, chart, column_width)).collect();
-        let left_of = |(panel, (_, y)): (&Panel, &(Scale, Scale))| left_margin(panel, y);
-        // Panels of one row and of a stack have equal margins.
-        let margins: Vec<f64> = if columns == 1 {
-            let all = chart.panels.iter().map(|p| left_margin(p, &scales(p, chart, column_width).1));
-            vec![all.fold(0.0, f64::max)]
-        } else {
-            row.iter().zip(&of_row).map(left_of).collect()
-        };
         let titled = row.iter().any(|panel| !panel.title.is_empty());
         y += if titled { LINE + 2.0 } else { 3.0 };
         let mut below: f64 = 4.0;

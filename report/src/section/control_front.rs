@@ -5,7 +5,7 @@ use cabin::ComfortWindow;
 
 use crate::StudyReport;
 use crate::figure::palette::{BLACK, LIMIT, Marker, Style};
-use crate::figure::{Axis, Chart, Mark, Panel};
+use crate::figure::{Axis, Chart, Mark, Panel, Side};
 
 /// A controller's line, or its point.
 pub(super) struct Front {
@@ -37,8 +37,13 @@ pub(super) fn controllers_chart(title: &str, told: &str, [x, y]: [&str; 2], fron
             Style::of_place(next - 1)
         }
     };
-    let line =
+    let mut line =
         |front: &Front| Mark::Line { name: front.name.clone(), style: style(front), points: front.points.clone() };
+    // A single point has its name beside it.
+    let name = |front: &Front| match front.points.as_slice() {
+        [at] => Some(Mark::Label { at: *at, name: front.name.clone(), colour: LIMIT, side: Side::Above }),
+        _ => None,
+    };
     Chart {
         title: title.to_owned(),
         told: told.to_owned(),
@@ -46,7 +51,7 @@ pub(super) fn controllers_chart(title: &str, told: &str, [x, y]: [&str; 2], fron
         panels: vec![Panel {
             x: Axis::new(x).from(0.0),
             y: Axis::new(y).from(0.0),
-            marks: fronts.iter().map(line).collect(),
+            marks: fronts.iter().map(&mut line).chain(fronts.iter().filter_map(name)).collect(),
             ..Panel::default()
         }],
         height: 150.0,

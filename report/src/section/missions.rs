@@ -1,7 +1,7 @@
 //! Two missions in time, and what they come to with every window (paper, figures `dynamic-comparison` and
 //! `dynamic-comparison-pareto`).
 
-use cabin::{Cabin, Operation, PassengerViews, celsius};
+use cabin::{Cabin, HeatFlows, Operation, PassengerViews, celsius};
 use chrono::{DateTime, TimeDelta, Timelike, Utc};
 use chrono_tz::Tz;
 use ingest::sample::Sample;
@@ -29,6 +29,11 @@ pub(super) fn section(study: &StudyReport) -> Result<Option<Section>, ReportErro
         };
         section.figures.push(Figure { file, svg: chart_svg(&mission(trace, study.note.as_deref(), study.zone))? });
         section = section.with(Block::Figure { file, caption });
+        if let Some(sample) = data_sample(trace, study.zone).filter(|_| trace.label == "hot") {
+            let (file, caption) = ("data_sample.svg", "The disturbances of the hot mission, and of its shaded hour");
+            section.figures.push(Figure { file, svg: chart_svg(&sample)? });
+            section = section.with(Block::Figure { file, caption });
+        }
         if let Some(svg) = heat_flows(trace, study)? {
             let (file, caption) = match trace.label.as_str() {
                 "cold" => ("heat_flow_cold.svg", "Heat flows of the shaded hour of the cold mission"),
@@ -106,12 +111,26 @@ fn shown_segment(trace: &MissionTrace, zone: Tz) -> Option<usize> {
     segments.max_by(|a, b| a.1.1.hvac_power_w().total_cmp(&b.1.1.hvac_power_w())).map(|(i, _)| i)
 }
 
+/// When each segment of a mission begins, by local time.
+pub(super) fn starts(trace: &MissionTrace, zone: Tz) -> Vec<DateTime<Tz>> {
+    trace.segments.iter().map(|(sample, _)| sample.segment.start.with_timezone(&zone)).collect()
+}
+
+/// The segment that is shown, its optimum and where its heat flows.
+pub(super) fn shown_operation<'t>(
+    trace: &'t MissionTrace,
+    study: &StudyReport,
+) -> Option<(&'t Sample, &'t Operation, HeatFlows)> {
+    let (sample, o) = trace.segments.get(shown_segment(trace, study.zone)?)?;
+    let views = PassengerViews::new(&study.vehicle);
+    let cabin = Cabin::new(&study.vehicle, &views, &sample.disturbances);
+    let flows = cabin.flows(&o.temperatures, o.devices.air_curtain, o.air_unit_heat_w, o.radiant_heater_power_w);
+    Some((sample, o, flows))
+}
+
 fn heat_flows(trace: &MissionTrace, study: &StudyReport) -> Result<Option<String>, ReportError> {
-    let Some((sample, o)) = shown_segment(trace, study.zone).and_then(|i| trace.segments.get(i)) else {
-        return Ok(None);
-    };
-    let (d, views) = (&sample.disturbances, PassengerViews::new(&study.vehicle));
-    let cabin = Cabin::new(&study.vehicle, &views, d);
+    let Some((sample, o, flows)) = shown_operation(trace, study) else { return Ok(None) };
+    let d = &sample.disturbances;
     let start = sample.segment.start.with_timezone(&study.zone);
     let end = start + TimeDelta::seconds(sample.segment.duration_s.into());
     let figure = HeatFlowFigure {
@@ -127,10 +146,49 @@ fn heat_flows(trace: &MissionTrace, study: &StudyReport) -> Result<Option<String
         ),
         ambient_k: d.ambient_temperature_k,
         temperatures: o.temperatures,
-        flows: cabin.flows(&o.temperatures, o.devices.air_curtain, o.air_unit_heat_w, o.radiant_heater_power_w),
+        flows,
         air_unit_power_w: o.air_unit_power_w,
     };
     heat_flow_svg(&figure).map(Some)
+}
+
+/// The disturbances of the day beside those of the hour that is shown (paper, figure `data-sample`).
+fn data_sample(trace: &MissionTrace, zone: Tz) -> Option<Chart> {
+    let day = mission(trace, None, zone);
+    let first = &trace.segments.first()?.0.segment;
+    let shown = shown_segment(trace, zone)?;
+    let hour_h = f64::from(first.duration_s) / 3600.0;
+    let from = clock_h(first.start, zone) + hour_h * shown as f64;
+    let within = |(x, _): &(f64, f64)| (from - 1e-9..=from + hour_h + 1e-9).contains(x);
+    let zoomed = |mark: &Mark| match mark {
+        Mark::Line { name, style, points } => Some(Mark::Line {
+            name: name.clone(),
+            style: *style,
+            points: points.iter().copied().filter(within).collect(),
+        }),
+        _ => None,
+    };
+    let disturbances = &day.panels[..4.min(day.panels.len())];
+    let rows = disturbances.iter().enumerate().flat_map(|(i, panel)| {
+        let last = i + 1 == disturbances.len();
+        let ticks = if last { Ticks::Clock } else { Ticks::None };
+        let mut left = Panel { x: panel.x.clone().with(ticks.clone()), ..panel.clone() };
+        let x = Axis::default().from(from).to(from + hour_h).with(ticks);
+        let mut right = Panel { x, marks: panel.marks.iter().filter_map(zoomed).collect(), ..panel.clone() };
+        right.y.label.clear();
+        if last {
+            left.x.label = "local time".to_owned();
+            right.x.label = "the shaded hour".to_owned();
+        }
+        [left, right]
+    });
+    Some(Chart {
+        title: format!("What a day gives: {}", first.start.with_timezone(&zone).format("%-d %B %Y")),
+        told: format!("{}; the shaded hour on the right.", first.mission),
+        columns: 2,
+        panels: rows.collect(),
+        height: 46.0,
+    })
 }
 
 /// Hours since the local midnight before.

@@ -12,7 +12,9 @@ mod findings;
 mod inputs;
 mod limits;
 mod missions;
+mod model;
 mod monthly;
+mod paper_numbers;
 mod pareto;
 mod parts;
 mod quality;
@@ -44,6 +46,7 @@ pub(crate) fn all(study: &StudyReport) -> Result<Vec<Section>, ReportError> {
         parts::section(study),
         limits::section(study),
         Some(findings::section(study)),
+        paper_numbers::section(study),
         monthly::section(study),
         simulation::section(study),
         missions::section(study)?,
@@ -53,6 +56,7 @@ pub(crate) fn all(study: &StudyReport) -> Result<Vec<Section>, ReportError> {
         control_mission::section(study)?,
         control_classes::section(study),
         Some(designs::section(study)),
+        model::section(study)?,
         Some(inputs::section(study)),
         Some(quality::section(study)),
         Some(assumptions::section(study)),
