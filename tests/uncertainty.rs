@@ -105,3 +105,25 @@ fn prop_months_are_as_sure_as_their_days() {
         assert!(close(&numbers(row), &numbers(other)), "{row:?} {other:?}");
     }
 }
+
+#[test]
+fn prop_intervals_of_driven_missions_hold_their_figures() {
+    let scratch = Scratch::small(36, "[0.5, 1.0]", "[1.0]");
+    scratch.expect(0, &["run"]);
+    for kind in ["simulation", "control"] {
+        let rows = scratch.query(&format!(
+            "SELECT i.mean_hvac_power_low_w, a.mean_hvac_power_w, i.mean_hvac_power_high_w, i.relative_difference_low,
+                a.mean_hvac_power_w / a.static_mean_hvac_power_w - 1, i.relative_difference_high
+             FROM {kind}_interval AS i JOIN {kind}_annual AS a USING (design, pmv_min, pmv_max, controller)"
+        ));
+        let all = scratch.query(&format!("SELECT count(*) FROM {kind}_annual"));
+        assert_eq!(rows.len().to_string(), all[0][0]);
+        for row in &rows {
+            let row = numbers(row);
+            assert!(row[0] < row[1] && row[1] < row[2], "{kind} {row:?}");
+            assert!(row[3] < row[4] && row[4] < row[5], "{kind} {row:?}");
+            // Mission and optima are drawn together: how far they are apart is surer than either, where one follows the other.
+            assert!(kind == "control" || row[5] - row[3] < (row[2] - row[0]) / row[1], "{kind} {row:?}");
+        }
+    }
+}

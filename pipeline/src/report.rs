@@ -4,7 +4,7 @@ use ingest::FileKind;
 use report::{ReportFile, StudyReport};
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
-use store::{RecordedStage, StageRecord, Store};
+use store::{Driven, RecordedStage, StageRecord, Store};
 use study::Study;
 use study::assumptions::assumptions;
 
@@ -163,8 +163,11 @@ fn content(study: &Study, store: &mut Store) -> Result<StudyReport, PipelineErro
         annual_intervals: store.annual_intervals()?,
         design_intervals: store.design_intervals()?,
         vehicle: study.vehicle.clone(),
+        shadow: store.shadow_year()?,
         disturbance_bins: store.disturbance_bins()?,
         vote_bins: store.vote_bins()?,
+        simulation_intervals: store.driven_intervals(Driven::Simulated)?,
+        control_intervals: store.driven_intervals(Driven::Controlled)?,
         month_spreads: store.month_spreads()?,
         left_out: store.left_out()?,
         monthly: store.monthly()?,

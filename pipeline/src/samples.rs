@@ -36,6 +36,8 @@ pub(crate) fn join(study: &Study, inputs: &Inputs, store: &mut Store) -> Result<
     if !study.forget_missing && store.settings(STAGE)? == keys::settings(study, STAGE) {
         check_weather_gone(&excluded, store)?;
     }
+    // First: a run that ends in between makes the samples once more.
+    store.put_shadow_year(shadow.hourly())?;
     let (changed, withdrawn) = store.put_samples(&samples, &excluded, &inputs.records()?)?;
     Ok(work(samples.len() as u64, changed, withdrawn, excluded.len() as u64))
 }

@@ -4,13 +4,14 @@ use cabin::{Operation, PassengerViews};
 use ingest::sample::Sample;
 use rayon::prelude::*;
 use simulate::{LANES, Replay, Segment, Summary, Variant};
-use store::{RecordedStage, SimulationId, SimulationRow, StageRecord, Store};
+use store::{Driven, RecordedStage, SimulationId, SimulationRow, StageRecord, Store};
 use study::Study;
 
 use crate::basis::{SimulationBasis, optima};
 use crate::freshness;
 use crate::in_turns::in_turns;
 use crate::missions::{MissionInTime, WeatherAndShade, missions};
+use crate::uncertainty::driven_ends;
 use crate::{Inputs, PipelineError, Progress, Work, traces};
 
 /// Missions between two transactions, per thread: two seconds of work.
@@ -85,7 +86,8 @@ pub(crate) fn simulate(
     if progress.stop() {
         return Err(PipelineError::Interrupted);
     }
-    store.complete_simulations(&StageRecord { key, result: basis.missions.len().to_string() })?;
+    let ends = driven_ends(&store.driven_missions(Driven::Simulated)?, study.zone);
+    store.complete_simulations(&StageRecord { key, result: basis.missions.len().to_string() }, &ends)?;
     Ok(work(study, simulated, basis.missions.len(), stale.len()))
 }
 

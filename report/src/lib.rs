@@ -28,7 +28,7 @@ pub struct ReportFile {
 }
 
 /// The names of all files that a report can have.
-pub const FILES: [&str; 36] = [
+pub const FILES: [&str; 37] = [
     "report.md",
     "aircurtain_setpoint.svg",
     "annual_average.csv",
@@ -59,6 +59,7 @@ pub const FILES: [&str; 36] = [
     "pmv_range.svg",
     "scenarios_overview.svg",
     "setpoint_profile.csv",
+    "shadow_fraction.svg",
     "simulated_pareto.svg",
     "simulation_annual.csv",
     "simulation_classes.csv",

@@ -2,7 +2,7 @@
 
 use cabin::ComfortWindow;
 use chrono::{DateTime, SecondsFormat, Utc};
-use store::Ends;
+use store::{DrivenEnds, Ends};
 
 /// `-0.5 … 0.7`, or `±1` for a symmetric window, `0` for neutral.
 pub(crate) fn window(window: ComfortWindow) -> String {
@@ -74,6 +74,29 @@ pub(crate) fn signed(value: f64, decimals: usize) -> String {
         (false, true) => format!("−{text}"),
         (false, false) => format!("+{text}"),
     }
+}
+
+/// A difference in percent of a whole, with a sign and its interval.
+pub(crate) fn signed_percent_within(part: f64, whole: f64, ends: Ends) -> String {
+    let text = signed_percent(part, whole);
+    match ends {
+        Some([low, high]) if whole > 0.0 => {
+            format!("{text} ({} … {})", signed(100.0 * low, 1), signed(100.0 * high, 1))
+        }
+        _ => text,
+    }
+}
+
+/// The intervals of what was driven so.
+pub(crate) fn of_point<'e>(
+    all: &'e [DrivenEnds],
+    design: &str,
+    window: ComfortWindow,
+    controller: &str,
+) -> Option<&'e DrivenEnds> {
+    let is_it =
+        |e: &&DrivenEnds| e.point.design == design && e.point.window == window && e.point.controller == controller;
+    all.iter().find(is_it)
 }
 
 /// A part of a whole in percent, with a sign.

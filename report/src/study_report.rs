@@ -5,8 +5,9 @@ use chrono_tz::Tz;
 use ingest::FileRecord;
 use store::{
     AnnualInterval, AnnualRow, Cloud, ControlClass, ControlPoint, ControlTrace, ControlYear, DesignInterval, DesignRow,
-    DisturbanceBin, Ends, ExclusionCount, LeftOutRow, LimitShare, MissionTrace, MonthRow, MonthlyRow, Outside,
-    SetpointRow, SimulatedClass, SimulatedYear, SimulationFailure, SpreadRow, StatusCounts, TraceWindow, VoteBin,
+    DisturbanceBin, DrivenEnds, Ends, ExclusionCount, LeftOutRow, LimitShare, MissionTrace, MonthRow, MonthlyRow,
+    Outside, SetpointRow, SimulatedClass, SimulatedYear, SimulationFailure, SpreadRow, StatusCounts, TraceWindow,
+    VoteBin,
 };
 use study::assumptions::Assumption;
 
@@ -34,6 +35,8 @@ pub struct StudyReport {
     pub annual: Vec<AnnualRow>,
     /// The bus.
     pub vehicle: Vehicle,
+    /// Shadow fractions at the full hours of a year of 365 days from 1 January 00:00 UTC; empty where none are stored.
+    pub shadow: Vec<f64>,
     /// How often disturbances lie where.
     pub disturbance_bins: Vec<DisturbanceBin>,
     /// How often passengers vote what at the optima.
@@ -42,6 +45,10 @@ pub struct StudyReport {
     pub annual_intervals: Vec<AnnualInterval>,
     /// Of what each design saves against each other one.
     pub design_intervals: Vec<DesignInterval>,
+    /// Intervals of the annual means of simulated missions.
+    pub simulation_intervals: Vec<DrivenEnds>,
+    /// Intervals of the annual means under controllers.
+    pub control_intervals: Vec<DrivenEnds>,
     /// How sure each month is.
     pub month_spreads: Vec<SpreadRow>,
     /// The year without one route, year or month.

@@ -16,7 +16,7 @@ type Table = (&'static str, &'static [&'static str]);
 
 /// Tables whose rows get their check when the transaction that wrote them ends. Optima get theirs
 /// while they are inserted.
-const SEALED: [Table; 17] = [
+const SEALED: [Table; 18] = [
     ("source_file", &["source_file_id"]),
     ("data_quality", &["source_file_id", "position"]),
     ("excluded_segment", &["mission", "segment"]),
@@ -25,6 +25,7 @@ const SEALED: [Table; 17] = [
     ("mission_load", &["source_file_id"]),
     ("hourly_sample", &["sample_id"]),
     ("sample_clock", &["sample_id"]),
+    ("shadow_year", &["one"]),
     ("hvac_design", &["design_id"]),
     ("comfort_window", &["window_id"]),
     SIMULATED,
@@ -39,7 +40,7 @@ const SIMULATED: Table = ("simulated_mission", &["source_file_id", "design_id", 
 const CONTROLLED: Table = ("controlled_mission", &["source_file_id", "design_id", "window_id", "controller"]);
 const OPTIMA: Table = ("optimum_point", &["sample_id", "design_id", "window_id"]);
 /// Tables of averages, with their keys.
-const AVERAGES: [(&str, &str); 29] = [
+const AVERAGES: [(&str, &str); 31] = [
     ("simulation_month", "design_id, window_id, controller, month"),
     ("simulation_class_month", "design_id, window_id, class_order, month"),
     ("monthly_average", "design, pmv_min, pmv_max, month"),
@@ -60,6 +61,8 @@ const AVERAGES: [(&str, &str); 29] = [
     ("design_interval", "design, other_design, pmv_min, pmv_max"),
     ("month_spread", "design, pmv_min, pmv_max, month"),
     ("left_out", "design, pmv_min, pmv_max, kind, name"),
+    ("simulation_interval", "design, pmv_min, pmv_max, controller"),
+    ("control_interval", "design, pmv_min, pmv_max, controller"),
     ("simulation_annual", "design, pmv_min, pmv_max, controller"),
     ("simulation_class", "design, pmv_min, pmv_max, class_order"),
     ("setpoint_profile", "design, pmv_min, pmv_max, mode"),

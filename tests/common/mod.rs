@@ -15,7 +15,7 @@ use store::Store;
 use tempfile::TempDir;
 
 /// All that a database says of a study, but for when and by which run.
-pub const CONTENT: [&str; 36] = [
+pub const CONTENT: [&str; 38] = [
     "SELECT * FROM sample",
     "SELECT * FROM optimum",
     "SELECT design, pmv_min, pmv_max, month, hvac_power_w, heating_power_w, cooling_power_w, sample_count, unsolved_count,
@@ -70,6 +70,10 @@ pub const CONTENT: [&str; 36] = [
         FROM month_spread",
     "SELECT design, pmv_min, pmv_max, kind, name, sample_count, month_count, hvac_power_w, relative_change,
         reduction_vs_ptc FROM left_out",
+    "SELECT design, pmv_min, pmv_max, controller, mean_hvac_power_low_w, mean_hvac_power_high_w, relative_difference_low,
+        relative_difference_high FROM simulation_interval",
+    "SELECT design, pmv_min, pmv_max, controller, mean_hvac_power_low_w, mean_hvac_power_high_w, relative_difference_low,
+        relative_difference_high FROM control_interval",
     "SELECT * FROM excluded_segment",
     "SELECT path, kind, blake3, bytes, rows, first_utc, last_utc, outcome, reading_key FROM source_file",
     "SELECT f.path, q.kind, q.count, q.line, q.column_name, q.message, q.position

@@ -8,12 +8,13 @@ mod files;
 mod traces;
 
 use cabin::PassengerViews;
-use store::{ControlId, ControlRow, RecordedStage, SetpointRow, StageRecord, Store};
+use store::{ControlId, ControlRow, Driven, RecordedStage, SetpointRow, StageRecord, Store};
 use study::Study;
 
 use crate::basis::SimulationBasis;
 use crate::in_turns::in_turns;
 use crate::missions::{WeatherAndShade, missions};
+use crate::uncertainty::driven_ends;
 use crate::{Inputs, PipelineError, Progress, Work, freshness};
 use clouds::Clouds;
 use drive::Driving;
@@ -84,7 +85,8 @@ pub(crate) fn control(
         return Err(PipelineError::Interrupted);
     }
     let missions = driving.basis.missions.len();
-    store.complete_controls(&StageRecord { key, result: missions.to_string() }, &setpoints, &traces)?;
+    let ends = driven_ends(&store.driven_missions(Driven::Controlled)?, study.zone);
+    store.complete_controls(&StageRecord { key, result: missions.to_string() }, &setpoints, &traces, &ends)?;
     Ok(work(study, driven, missions, stale.len()))
 }
 

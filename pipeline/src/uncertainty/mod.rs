@@ -3,6 +3,7 @@
 mod annual;
 mod bootstrap;
 mod days;
+mod driven;
 mod left_out;
 mod months;
 
@@ -12,6 +13,7 @@ use store::{MonthDays, MonthSums, Uncertainty};
 
 use self::bootstrap::{Draws, Part};
 pub use self::days::{DaysOfMonth, day};
+pub use self::driven::driven_ends;
 
 /// Days of the months in a year without 29 February (paper, eq. meanPower).
 const DAYS_OF_MONTH: [f64; bootstrap::MONTHS] =

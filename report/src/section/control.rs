@@ -7,7 +7,7 @@ use super::control_front::{Coordinate, Front, Verdict, controllers_chart, verdic
 use super::weights_note;
 use crate::document::{Block, DataTable, Figure, Section, Span, Table};
 use crate::figure::{Chart, chart_svg};
-use crate::numbers::{optional, percent, signed_percent, text, watts, window};
+use crate::numbers::{of_point, optional, percent, signed_percent_within, text, watts, window, within};
 use crate::{ReportError, StudyReport};
 
 /// The last of the designs that are driven stands for them; all are in the tables of data.
@@ -33,7 +33,7 @@ pub(super) fn section(study: &StudyReport) -> Result<Option<Section>, ReportErro
              extracted profiles of a window, or setpoints that others have published, with the same air curtains and heaters. Passengers judge by the vote of\n\
              their last 15 minutes: its mean distance from neutral, and the passenger-hours with a vote outside the window.",
         ))
-        .with(Block::Table(extracted(&years)));
+        .with(Block::Table(extracted(study, &years)));
     let verdicts = verdicts(study, &design, shown);
     if !verdicts.is_empty() {
         section = section
@@ -76,14 +76,19 @@ fn vote(value: Option<f64>) -> String {
     value.map_or_else(|| "–".to_owned(), |v| format!("{v:.2}"))
 }
 
-fn extracted(years: &[&ControlYear]) -> Table {
+fn extracted(study: &StudyReport, years: &[&ControlYear]) -> Table {
     let row = |y: &&ControlYear| {
         let p = &y.point;
+        let ends = of_point(&study.control_intervals, &p.design, p.window, &p.controller);
         vec![
             window(p.window),
             watts(Some(p.static_mean_hvac_power_w)),
-            watts(Some(p.mean_hvac_power_w)),
-            signed_percent(p.mean_hvac_power_w - p.static_mean_hvac_power_w, p.static_mean_hvac_power_w),
+            within(p.mean_hvac_power_w, ends.and_then(|e| e.power_w), 0),
+            signed_percent_within(
+                p.mean_hvac_power_w - p.static_mean_hvac_power_w,
+                p.static_mean_hvac_power_w,
+                ends.and_then(|e| e.relative_difference),
+            ),
             vote(p.static_mean_abs_pmv),
             vote(p.mean_abs_pmv),
             percent(p.outside_fraction),
@@ -203,6 +208,8 @@ fn hours_outside(study: &StudyReport, design: &str, shown: ComfortWindow) -> Cha
 }
 
 fn annual(study: &StudyReport) -> DataTable {
+    let ends =
+        |y: &ControlYear| of_point(&study.control_intervals, &y.point.design, y.point.window, &y.point.controller);
     DataTable::of(
         "control_annual.csv",
         &study.control_years,
@@ -220,6 +227,8 @@ fn annual(study: &StudyReport) -> DataTable {
             ("outside_fraction", &|y| optional(y.point.outside_fraction)),
             ("saturated_fraction", &|y| y.saturated_fraction.to_string()),
             ("mission_count", &|y| y.point.mission_count.to_string()),
+            ("mean_hvac_power_low_w", &|y| optional(ends(y).and_then(|e| e.power_w).map(|[low, _]| low))),
+            ("mean_hvac_power_high_w", &|y| optional(ends(y).and_then(|e| e.power_w).map(|[_, high]| high))),
         ],
     )
 }

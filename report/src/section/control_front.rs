@@ -39,9 +39,20 @@ pub(super) fn controllers_chart(title: &str, told: &str, [x, y]: [&str; 2], fron
     };
     let mut line =
         |front: &Front| Mark::Line { name: front.name.clone(), style: style(front), points: front.points.clone() };
-    // A single point has its name beside it.
+    // A single point has its name beside it, on the left where another one lies in its way.
+    let all = || fronts.iter().flat_map(|front| &front.points).copied();
+    let (wide, high) = all().fold((0.0, 0.0), |(w, h), (x, y)| (f64::max(w, x), f64::max(h, y)));
+    let in_way = |(x, y): (f64, f64)| {
+        let beside = |(other_x, other_y): (f64, f64)| {
+            (0.001 * wide..0.25 * wide).contains(&(other_x - x)) && (other_y - y).abs() < 0.06 * high
+        };
+        fronts.iter().filter(|front| front.points.len() == 1).any(|front| beside(front.points[0]))
+    };
     let name = |front: &Front| match front.points.as_slice() {
-        [at] => Some(Mark::Label { at: *at, name: front.name.clone(), colour: LIMIT, side: Side::Above }),
+        [at] => {
+            let side = if in_way(*at) { Side::Below } else { Side::Above };
+            Some(Mark::Label { at: *at, name: front.name.clone(), colour: LIMIT, side })
+        }
         _ => None,
     };
     Chart {

@@ -1,12 +1,14 @@
-//! What the hours of the study are like (paper, figure `scenarios-overview`), and what passengers vote in them (figure
-//! `yearly-pmv-range-comparison`).
+//! What the hours of the study are like (paper, figures `shadow-fraction` and `scenarios-overview`), and what passengers vote in
+//! them (figure `yearly-pmv-range-comparison`).
 
 use cabin::ComfortWindow;
+use chrono::{NaiveDate, NaiveTime, TimeDelta, TimeZone, Utc};
+use shading::hour_of_year;
 use store::{DisturbanceBin, VoteBin};
 
 use super::setpoints::nearest_windows;
 use crate::document::{Block, Figure, Section};
-use crate::figure::palette::{COOLING, HEATING, IN_TIME, SUN, Style};
+use crate::figure::palette::{COOLING, HEATING, IN_TIME, Marker, SUN, Style};
 use crate::figure::{Axis, Chart, Mark, Panel, Ticks, chart_svg};
 use crate::numbers::window;
 use crate::{ReportError, StudyReport};
@@ -17,6 +19,7 @@ pub(super) fn section(study: &StudyReport) -> Result<Option<Section>, ReportErro
     }
     let mut section = Section::new("The hours of the study");
     for (file, caption, chart) in [
+        ("shadow_fraction.svg", "Shadow fraction on three days", shadow(study)),
         ("scenarios_overview.svg", "Disturbances of all samples", Some(disturbances(&study.disturbance_bins))),
         ("pmv_range.svg", "Votes at the optima", votes(study)),
     ] {
@@ -26,6 +29,38 @@ pub(super) fn section(study: &StudyReport) -> Result<Option<Section>, ReportErro
         }
     }
     Ok(Some(section))
+}
+
+/// Three days of the year (paper, figure `shadow-fraction`); none where no shade is stored.
+fn shadow(study: &StudyReport) -> Option<Chart> {
+    const YEAR: i32 = 2022;
+    let looks = [
+        ("10 December", 12, 10, COOLING, "", Marker::Circle),
+        ("21 March", 3, 21, "#009e73", "3 1.5", Marker::OpenSquare),
+        ("24 July", 7, 24, HEATING, "1.2 1.2", Marker::Triangle),
+    ];
+    let of = |(name, month, day, colour, dash, marker): (&str, u32, u32, &'static str, &'static str, Marker)| {
+        let midnight = NaiveDate::from_ymd_opt(YEAR, month, day)?.and_time(NaiveTime::MIN);
+        let start = study.zone.from_local_datetime(&midnight).earliest()?.with_timezone(&Utc);
+        let at = |hour: u32| {
+            let value = study.shadow.get(hour_of_year(start + TimeDelta::hours(hour.into())));
+            Some((f64::from(hour), *value?))
+        };
+        let style = Style { colour, dash, width: 1.0, marker: Some(marker) };
+        Some(Mark::Line { name: name.to_owned(), style, points: (0..=24).filter_map(at).collect() })
+    };
+    (!study.shadow.is_empty()).then(|| Chart {
+        title: "Shadow fraction".to_owned(),
+        told: "Share of the way that lies in the shade, by local time.".to_owned(),
+        columns: 1,
+        panels: vec![Panel {
+            x: Axis::new(format!("local time ({})", study.zone)).from(0.0).to(24.0).with(Ticks::Clock),
+            y: Axis::new("shadow fraction").from(0.0).to(1.0),
+            marks: looks.into_iter().filter_map(of).collect(),
+            ..Panel::default()
+        }],
+        height: 100.0,
+    })
 }
 
 /// The outline of bins that follow each other; those that are missing hold nothing.

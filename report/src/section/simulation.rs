@@ -5,7 +5,7 @@ use store::SimulatedYear;
 use super::weights_note;
 use crate::StudyReport;
 use crate::document::{Block, DataTable, Section, Span, Table};
-use crate::numbers::{percent, signed, signed_percent, text, watts, window};
+use crate::numbers::{of_point, optional, percent, signed, signed_percent_within, text, watts, window, within};
 
 pub(super) fn section(study: &StudyReport) -> Option<Section> {
     let mut tables = Vec::new();
@@ -17,7 +17,7 @@ pub(super) fn section(study: &StudyReport) -> Option<Section> {
     }
     tables.push(data(study));
     let section = Section { tables, ..Section::new("Steady state against simulation") };
-    let rows: Vec<Vec<String>> = comparisons(study).iter().map(row).collect();
+    let rows: Vec<Vec<String>> = comparisons(study).iter().map(|c| row(c, study)).collect();
     let columns = [
         "steady state W",
         "simulated W",
@@ -89,15 +89,16 @@ fn comparisons(study: &StudyReport) -> Vec<Comparison<'_>> {
     years.iter().filter(|y| y.controller == "paper").filter_map(compare).collect()
 }
 
-fn row(c: &Comparison<'_>) -> Vec<String> {
+fn row(c: &Comparison<'_>, study: &StudyReport) -> Vec<String> {
     let y = c.paper;
     let difference_w = y.mean_hvac_power_w - y.static_mean_hvac_power_w;
+    let ends = of_point(&study.simulation_intervals, &y.design, y.window, &y.controller);
     vec![
         y.design.clone(),
         window(y.window),
         watts(Some(y.static_mean_hvac_power_w)),
-        watts(Some(y.mean_hvac_power_w)),
-        signed_percent(difference_w, y.static_mean_hvac_power_w),
+        within(y.mean_hvac_power_w, ends.and_then(|e| e.power_w), 0),
+        signed_percent_within(difference_w, y.static_mean_hvac_power_w, ends.and_then(|e| e.relative_difference)),
         signed(c.start_up_w, 0),
         signed(c.power_limit_w, 0),
         signed(c.hourly_modes_w, 0),
@@ -107,6 +108,7 @@ fn row(c: &Comparison<'_>) -> Vec<String> {
 }
 
 fn data(study: &StudyReport) -> DataTable {
+    let ends = |y: &SimulatedYear| of_point(&study.simulation_intervals, &y.design, y.window, &y.controller);
     DataTable::of(
         "simulation_annual.csv",
         &study.simulated_years,
@@ -119,6 +121,8 @@ fn data(study: &StudyReport) -> DataTable {
             ("static_mean_hvac_power_w", &|y| y.static_mean_hvac_power_w.to_string()),
             ("saturated_fraction", &|y| y.saturated_fraction.to_string()),
             ("mission_count", &|y| y.mission_count.to_string()),
+            ("mean_hvac_power_low_w", &|y| optional(ends(y).and_then(|e| e.power_w).map(|[low, _]| low))),
+            ("mean_hvac_power_high_w", &|y| optional(ends(y).and_then(|e| e.power_w).map(|[_, high]| high))),
         ],
     )
 }

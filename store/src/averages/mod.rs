@@ -12,7 +12,8 @@ use crate::checks::{commit, seal_averages};
 use crate::row::begin;
 use crate::stages::{RecordedStage, StageRecord, record_stage};
 use crate::{
-    ControlTrace, Energy, SetpointRow, Store, StoreError, StoredGrid, control_views, energy, setpoints, uncertainty,
+    ControlTrace, Driven, DrivenEnds, Energy, SetpointRow, Store, StoreError, StoredGrid, control_views, driven,
+    energy, setpoints, uncertainty,
 };
 
 impl Store {
@@ -42,14 +43,14 @@ impl Store {
             optima::UNMET_DEMAND,
             "DELETE FROM stale_month",
         ];
-        self.complete(RecordedStage::Solve, record, &renew, Some((grid, energy)))
+        self.complete(RecordedStage::Solve, record, &renew, New::Optima(grid, energy))
     }
 
     /// Completes the simulations: renews what they come to in the year and by class, and records the stage.
     ///
     /// # Errors
     /// [`StoreError::Refused`], [`StoreError::Damaged`].
-    pub fn complete_simulations(&mut self, record: &StageRecord) -> Result<(), StoreError> {
+    pub fn complete_simulations(&mut self, record: &StageRecord, ends: &[DrivenEnds]) -> Result<(), StoreError> {
         let renew = [
             "DELETE FROM simulation_month WHERE month IN (SELECT month FROM stale_simulation_month)",
             simulations::MONTH,
@@ -61,7 +62,7 @@ impl Store {
             simulations::CLASS,
             "DELETE FROM stale_simulation_month",
         ];
-        self.complete(RecordedStage::Simulate, record, &renew, None)
+        self.complete(RecordedStage::Simulate, record, &renew, New::Driven(ends))
     }
 
     /// Completes the missions under controllers: renews the setpoints that they follow, what they come to in the year and by
@@ -74,6 +75,7 @@ impl Store {
         record: &StageRecord,
         rows: &[SetpointRow],
         traces: &[ControlTrace],
+        ends: &[DrivenEnds],
     ) -> Result<(), StoreError> {
         let renew = [
             "DELETE FROM control_annual",
@@ -88,6 +90,7 @@ impl Store {
             let run_id = last_run(&mut tx).await?;
             setpoints::put(&mut tx, run_id, rows).await?;
             control_views::put_traces(&mut tx, run_id, traces).await?;
+            driven::put(&mut tx, run_id, Driven::Controlled, ends).await?;
             for sql in renew {
                 execute(&mut tx, sql).await?;
             }
@@ -103,14 +106,17 @@ impl Store {
         stage: RecordedStage,
         record: &StageRecord,
         renew: &[&'static str],
-        energy: Option<(&StoredGrid, &Energy)>,
+        new: New<'_>,
     ) -> Result<(), StoreError> {
         self.drive(async |c| {
             let mut tx = begin(c).await?;
-            if let Some((grid, energy)) = energy {
-                let run_id = last_run(&mut tx).await?;
-                energy::put(&mut tx, run_id, grid, energy).await?;
-                uncertainty::put(&mut tx, run_id, grid, &energy.uncertainty).await?;
+            let run_id = last_run(&mut tx).await?;
+            match new {
+                New::Optima(grid, energy) => {
+                    energy::put(&mut tx, run_id, grid, energy).await?;
+                    uncertainty::put(&mut tx, run_id, grid, &energy.uncertainty).await?;
+                }
+                New::Driven(ends) => driven::put(&mut tx, run_id, Driven::Simulated, ends).await?,
             }
             for &sql in renew {
                 execute(&mut tx, sql).await?;
@@ -121,6 +127,12 @@ impl Store {
             commit(tx).await
         })
     }
+}
+
+/// What is written besides averages.
+enum New<'n> {
+    Optima(&'n StoredGrid, &'n Energy),
+    Driven(&'n [DrivenEnds]),
 }
 
 /// Tells the planner how large tables are: without it a question about a year's optima and samples takes twenty times as long.
