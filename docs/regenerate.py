@@ -5,7 +5,7 @@
 
 FOLDER gets, where it is not there, a year like the paper's (`demo --like`, 5 GB), its study, and a study for everything that the
 paper does not publish and that is varied here. Tables stand in the documents between `<!-- table NAME -->` and `<!-- end -->`; what
-is between them is replaced. Nothing but Python itself is needed. Some twenty minutes on two cores.
+is between them is replaced. Nothing but Python itself is needed. Some six minutes on two cores.
 """
 
 import argparse

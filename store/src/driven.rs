@@ -5,7 +5,7 @@ use chrono::{DateTime, TimeDelta, Utc};
 use sqlx::sqlite::SqliteConnection;
 use sqlx::{AssertSqlSafe, Row};
 
-use crate::row::{Insert, time, window};
+use crate::row::{ends, high, low, put_all, time, window};
 use crate::{Ends, Store, StoreError};
 
 /// How missions were driven.
@@ -121,10 +121,6 @@ impl Store {
         self.drive(async |c| {
             // The text is built from constants alone.
             let rows = sqlx::query(AssertSqlSafe(sql)).fetch_all(c).await?;
-            let ends = |r: &sqlx::sqlite::SqliteRow, low: &str, high: &str| -> Result<Ends, sqlx::Error> {
-                let (low, high): (Option<f64>, Option<f64>) = (r.try_get(low)?, r.try_get(high)?);
-                Ok(low.zip(high).map(|(low, high)| [low, high]))
-            };
             let row = |r: &sqlx::sqlite::SqliteRow| -> Result<DrivenEnds, sqlx::Error> {
                 Ok(DrivenEnds {
                     point: DrivenPoint {
@@ -150,17 +146,15 @@ pub(crate) async fn put(
 ) -> Result<(), StoreError> {
     // The text is built from constants alone.
     sqlx::query(AssertSqlSafe(format!("DELETE FROM {}", driven.intervals()))).execute(&mut *c).await?;
-    for row in rows {
-        let (power, difference) = (row.power_w, row.relative_difference);
-        let insert = Insert::into(driven.intervals())
+    put_all(c, driven.intervals(), rows, |insert, row| {
+        insert
             .of_point(&row.point.design, row.point.window)?
             .set("controller", row.point.controller.clone())?
-            .set("mean_hvac_power_low_w", power.map(|[low, _]| low))?
-            .set("mean_hvac_power_high_w", power.map(|[_, high]| high))?
-            .set("relative_difference_low", difference.map(|[low, _]| low))?
-            .set("relative_difference_high", difference.map(|[_, high]| high))?
-            .set("run_id", run_id)?;
-        insert.execute(&mut *c).await?;
-    }
-    Ok(())
+            .set("mean_hvac_power_low_w", low(row.power_w))?
+            .set("mean_hvac_power_high_w", high(row.power_w))?
+            .set("relative_difference_low", low(row.relative_difference))?
+            .set("relative_difference_high", high(row.relative_difference))?
+            .set("run_id", run_id)
+    })
+    .await
 }

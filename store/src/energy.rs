@@ -4,7 +4,7 @@ use cabin::HeatFlows;
 use sqlx::Row;
 use sqlx::sqlite::SqliteConnection;
 
-use crate::row::{Insert, pack, unpack};
+use crate::row::{Insert, pack, put_all, unpack};
 use crate::{Store, StoreError, StoredGrid, Uncertainty};
 
 /// What samples have in common.
@@ -130,8 +130,6 @@ pub struct Energy {
 }
 
 const SUMS: usize = 6;
-/// Rows of one INSERT.
-const ROWS: usize = 256;
 
 impl ClassSum {
     fn values(&self) -> [f64; SUMS] {
@@ -204,9 +202,20 @@ pub(crate) async fn put(
     for flows in &energy.flows {
         put_flows(c, run_id, grid, flows).await?;
     }
-    for classes in energy.classes.chunks(ROWS) {
-        put_classes(c, run_id, grid, classes).await?;
-    }
+    put_all(c, "energy_class", &energy.classes, |insert, class| {
+        insert
+            .of_point(&grid.designs[class.design].name, grid.windows[class.window])?
+            .set("sorted_by", class.class.sorted_by.clone())?
+            .set("class", class.class.name.clone())?
+            .set("class_order", class.class.order)?
+            .set("weight", class.weight)?
+            .set("hvac_power_w", class.hvac_power_w)?
+            .set("kwh_per_km", class.kwh_per_km)?
+            .set("vehicle_power_share", class.vehicle_power_share)?
+            .set("sample_count", class.samples.cast_signed())?
+            .set("run_id", run_id)
+    })
+    .await?;
     for bin in &energy.bins {
         let row = Insert::into("disturbance_histogram")
             .set("quantity", bin.quantity)?
@@ -218,30 +227,6 @@ pub(crate) async fn put(
         row.execute(&mut *c).await?;
     }
     Ok(())
-}
-
-async fn put_classes(
-    c: &mut SqliteConnection,
-    run_id: i64,
-    grid: &StoredGrid,
-    classes: &[ClassYear],
-) -> Result<(), StoreError> {
-    let mut rows = Insert::into("energy_class");
-    for (n, class) in classes.iter().enumerate() {
-        rows = if n == 0 { rows } else { rows.another() };
-        rows = rows
-            .of_point(&grid.designs[class.design].name, grid.windows[class.window])?
-            .set("sorted_by", class.class.sorted_by.clone())?
-            .set("class", class.class.name.clone())?
-            .set("class_order", class.class.order)?
-            .set("weight", class.weight)?
-            .set("hvac_power_w", class.hvac_power_w)?
-            .set("kwh_per_km", class.kwh_per_km)?
-            .set("vehicle_power_share", class.vehicle_power_share)?
-            .set("sample_count", class.samples.cast_signed())?
-            .set("run_id", run_id)?;
-    }
-    rows.execute(c).await.map(|_| ())
 }
 
 async fn put_month(c: &mut SqliteConnection, grid: &StoredGrid, month: &MonthSums) -> Result<(), StoreError> {

@@ -19,6 +19,7 @@ mod files;
 mod grid;
 mod histograms;
 mod history;
+mod how_sure;
 mod missions;
 mod optima;
 mod questions;
@@ -50,6 +51,7 @@ pub use files::KnownFile;
 pub use grid::{DesignRow, GridChange, StoredGrid};
 pub use histograms::{DisturbanceBin, VoteBin};
 pub use history::{Basis, Change, ChangeKind, PastAverage};
+pub use how_sure::{AnnualInterval, DesignInterval, LeftOutRow, SpreadRow};
 pub use missions::StoredSegment;
 pub use optima::{MissingOptima, NewOptimum, StatusCounts, StoredOptimum};
 pub use questions::{Question, questions};
@@ -58,9 +60,6 @@ pub use runs::{Counts, RunEnd, RunRow, RunStage};
 pub use simulations::{SimulatedClass, SimulatedYear, SimulationFailure, SimulationId, SimulationRow};
 pub use stages::{RecordedStage, SettingRow, StageRecord};
 pub use traces::{MissionTrace, TraceRow, TraceWindow};
-pub use uncertainty::{
-    AnnualEnds, AnnualInterval, DaySum, DesignInterval, Ends, LeftOut, LeftOutRow, MonthDays, MonthSpread, PairEnds,
-    SpreadRow, Uncertainty,
-};
+pub use uncertainty::{AnnualEnds, DaySum, Ends, LeftOut, MonthDays, MonthSpread, PairEnds, Uncertainty};
 pub use verification::{CheckRow, VerificationRow};
 pub use views::{AnnualRow, ExclusionCount, LimitShare, MonthRow, MonthlyRow, OptimumRow};

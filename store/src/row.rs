@@ -5,7 +5,7 @@ use chrono::{DateTime, SecondsFormat, Utc};
 use sqlx::sqlite::{SqliteArguments, SqliteConnection, SqliteRow};
 use sqlx::{Arguments, AssertSqlSafe, Connection, Encode, Row, Sqlite, Transaction, Type};
 
-use crate::StoreError;
+use crate::{Ends, StoreError};
 
 /// A transaction that writes from its beginning: one that only reads at first could not wait for another writer.
 pub(crate) async fn begin(c: &mut SqliteConnection) -> Result<Transaction<'_, Sqlite>, StoreError> {
@@ -83,6 +83,42 @@ pub(crate) fn unpack<const N: usize>(bytes: &[u8]) -> Vec<[f64; N]> {
     let (values, _) = bytes.as_chunks::<8>();
     let values: Vec<f64> = values.iter().map(|b| f64::from_le_bytes(*b)).collect();
     values.as_chunks::<N>().0.to_vec()
+}
+
+/// Rows of one INSERT.
+const ROWS: usize = 256;
+
+/// Writes rows, many of them in one statement; `columns` sets those of a row, always in the same order.
+pub(crate) async fn put_all<T>(
+    c: &mut SqliteConnection,
+    table: &'static str,
+    rows: &[T],
+    columns: impl Fn(Insert, &T) -> Result<Insert, StoreError>,
+) -> Result<(), StoreError> {
+    for rows in rows.chunks(ROWS) {
+        let mut insert = Insert::into(table);
+        for (n, row) in rows.iter().enumerate() {
+            insert = columns(if n == 0 { insert } else { insert.another() }, row)?;
+        }
+        insert.execute(&mut *c).await?;
+    }
+    Ok(())
+}
+
+/// Lower end of an interval.
+pub(crate) fn low(ends: Ends) -> Option<f64> {
+    ends.map(|[low, _]| low)
+}
+
+/// Upper end.
+pub(crate) fn high(ends: Ends) -> Option<f64> {
+    ends.map(|[_, high]| high)
+}
+
+/// Both ends of an interval, where it is known.
+pub(crate) fn ends(r: &SqliteRow, low: &str, high: &str) -> Result<Ends, sqlx::Error> {
+    let (low, high): (Option<f64>, Option<f64>) = (r.try_get(low)?, r.try_get(high)?);
+    Ok(low.zip(high).map(|(low, high)| [low, high]))
 }
 
 /// A count, which SQLite keeps as a signed number.

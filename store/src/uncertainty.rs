@@ -3,9 +3,8 @@
 use sqlx::Row;
 use sqlx::sqlite::SqliteConnection;
 
-use crate::row::{Insert, count, pack, unpack, window};
+use crate::row::{Insert, high, low, pack, put_all, unpack};
 use crate::{Store, StoreError, StoredGrid};
-use cabin::ComfortWindow;
 use chrono::NaiveDate;
 
 /// Sums over the solved samples of the missions that begin on a day.
@@ -124,75 +123,7 @@ pub struct Uncertainty {
     pub left_out: Vec<LeftOut>,
 }
 
-/// A row of `annual_interval`.
-#[derive(Debug, Clone, PartialEq)]
-pub struct AnnualInterval {
-    /// Design.
-    pub design: String,
-    /// Comfort window.
-    pub window: ComfortWindow,
-    /// HVAC power in W.
-    pub hvac_power_w: Ends,
-    /// Fraction saved against the design `ptc`.
-    pub reduction_vs_ptc: Ends,
-}
-
-/// A row of `design_interval`.
-#[derive(Debug, Clone, PartialEq)]
-pub struct DesignInterval {
-    /// Design, and the one that it is compared with.
-    pub designs: [String; 2],
-    /// Comfort window.
-    pub window: ComfortWindow,
-    /// Fraction of the power of the other one that the design saves.
-    pub saving: f64,
-    /// Its interval.
-    pub ends: Ends,
-}
-
-/// A row of `month_spread`.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SpreadRow {
-    /// Design.
-    pub design: String,
-    /// Comfort window.
-    pub window: ComfortWindow,
-    /// Local month, 1 … 12.
-    pub month: u8,
-    /// Solved samples.
-    pub samples: u64,
-    /// Days on which their missions begin.
-    pub days: u64,
-    /// Standard error of the mean power in W.
-    pub standard_error_w: Option<f64>,
-    /// Independent samples that would be as sure.
-    pub effective_samples: Option<f64>,
-}
-
-/// A row of `left_out`.
-#[derive(Debug, Clone, PartialEq)]
-pub struct LeftOutRow {
-    /// Design.
-    pub design: String,
-    /// Comfort window.
-    pub window: ComfortWindow,
-    /// What is left out: `route`, `year`, `month`.
-    pub kind: String,
-    /// Which one.
-    pub name: String,
-    /// Solved samples that remain.
-    pub samples: u64,
-    /// Annual mean of the others in W.
-    pub hvac_power_w: f64,
-    /// Relative change against the whole year.
-    pub change: f64,
-    /// Fraction saved against the design `ptc`.
-    pub reduction_vs_ptc: Option<f64>,
-}
-
 const SUMS: usize = 6;
-/// Rows of one INSERT.
-const ROWS: usize = 256;
 
 impl DaySum {
     fn values(&self) -> [f64; SUMS] {
@@ -232,98 +163,6 @@ impl Store {
             Ok(all)
         })
     }
-
-    /// The table `annual_interval`, in the order of the study.
-    ///
-    /// # Errors
-    /// [`StoreError::Refused`], [`StoreError::Damaged`].
-    pub fn annual_intervals(&mut self) -> Result<Vec<AnnualInterval>, StoreError> {
-        let sql = "SELECT i.* FROM annual_interval AS i
-            JOIN hvac_design AS d ON d.name = i.design
-            JOIN comfort_window AS w ON w.pmv_min = i.pmv_min AND w.pmv_max = i.pmv_max
-            ORDER BY d.position, w.position";
-        self.select(sql, |r| {
-            Ok(AnnualInterval {
-                design: r.try_get("design")?,
-                window: window(r)?,
-                hvac_power_w: ends(r, "hvac_power_low_w", "hvac_power_high_w")?,
-                reduction_vs_ptc: ends(r, "reduction_vs_ptc_low", "reduction_vs_ptc_high")?,
-            })
-        })
-    }
-
-    /// The table `design_interval`, in the order of the study.
-    ///
-    /// # Errors
-    /// [`StoreError::Refused`], [`StoreError::Damaged`].
-    pub fn design_intervals(&mut self) -> Result<Vec<DesignInterval>, StoreError> {
-        let sql = "SELECT i.* FROM design_interval AS i
-            JOIN hvac_design AS d ON d.name = i.design
-            JOIN hvac_design AS o ON o.name = i.other_design
-            JOIN comfort_window AS w ON w.pmv_min = i.pmv_min AND w.pmv_max = i.pmv_max
-            WHERE i.saving IS NOT NULL
-            ORDER BY d.position, o.position, w.position";
-        self.select(sql, |r| {
-            Ok(DesignInterval {
-                designs: [r.try_get("design")?, r.try_get("other_design")?],
-                window: window(r)?,
-                saving: r.try_get("saving")?,
-                ends: ends(r, "saving_low", "saving_high")?,
-            })
-        })
-    }
-}
-
-impl Store {
-    /// The table `month_spread`, in the order of the study.
-    ///
-    /// # Errors
-    /// [`StoreError::Refused`], [`StoreError::Damaged`].
-    pub fn month_spreads(&mut self) -> Result<Vec<SpreadRow>, StoreError> {
-        let sql = "SELECT i.* FROM month_spread AS i
-            JOIN hvac_design AS d ON d.name = i.design
-            JOIN comfort_window AS w ON w.pmv_min = i.pmv_min AND w.pmv_max = i.pmv_max
-            ORDER BY d.position, w.position, i.month";
-        self.select(sql, |r| {
-            Ok(SpreadRow {
-                design: r.try_get("design")?,
-                window: window(r)?,
-                month: r.try_get("month")?,
-                samples: count(r, "sample_count")?,
-                days: count(r, "day_count")?,
-                standard_error_w: r.try_get("standard_error_w")?,
-                effective_samples: r.try_get("effective_sample_count")?,
-            })
-        })
-    }
-
-    /// The table `left_out`, in the order of the study; years, months, routes.
-    ///
-    /// # Errors
-    /// [`StoreError::Refused`], [`StoreError::Damaged`].
-    pub fn left_out(&mut self) -> Result<Vec<LeftOutRow>, StoreError> {
-        let sql = "SELECT i.* FROM left_out AS i
-            JOIN hvac_design AS d ON d.name = i.design
-            JOIN comfort_window AS w ON w.pmv_min = i.pmv_min AND w.pmv_max = i.pmv_max
-            ORDER BY d.position, w.position, i.kind DESC, i.name";
-        self.select(sql, |r| {
-            Ok(LeftOutRow {
-                design: r.try_get("design")?,
-                window: window(r)?,
-                kind: r.try_get("kind")?,
-                name: r.try_get("name")?,
-                samples: count(r, "sample_count")?,
-                hvac_power_w: r.try_get("hvac_power_w")?,
-                change: r.try_get("relative_change")?,
-                reduction_vs_ptc: r.try_get("reduction_vs_ptc")?,
-            })
-        })
-    }
-}
-
-fn ends(r: &sqlx::sqlite::SqliteRow, low: &str, high: &str) -> Result<Ends, sqlx::Error> {
-    let (low, high): (Option<f64>, Option<f64>) = (r.try_get(low)?, r.try_get(high)?);
-    Ok(low.zip(high).map(|(low, high)| [low, high]))
 }
 
 /// Replaces intervals and spreads, and of the days those of months that have changed.
@@ -358,24 +197,44 @@ pub(crate) async fn put(
         let (design, window) = (n / grid.windows.len(), n % grid.windows.len());
         put_annual(c, run_id, grid, [design, window], ends, all).await?;
     }
-    for rows in all.pairs.chunks(ROWS) {
-        put_pairs(c, run_id, grid, rows).await?;
-    }
-    for rows in all.spreads.chunks(ROWS) {
-        put_spreads(c, run_id, grid, rows).await?;
-    }
-    for rows in all.left_out.chunks(ROWS) {
-        put_left_out(c, run_id, grid, rows).await?;
-    }
-    Ok(())
-}
-
-fn low(ends: Ends) -> Option<f64> {
-    ends.map(|[low, _]| low)
-}
-
-fn high(ends: Ends) -> Option<f64> {
-    ends.map(|[_, high]| high)
+    put_all(c, "design_interval", &all.pairs, |insert, row| {
+        let [design, other] = row.designs;
+        insert
+            .of_point(&grid.designs[design].name, grid.windows[row.window])?
+            .set("other_design", grid.designs[other].name.clone())?
+            .set("other_takes_more_low_w", low(row.other_takes_more_w))?
+            .set("other_takes_more_high_w", high(row.other_takes_more_w))?
+            .set("saving_low", low(row.saving))?
+            .set("saving_high", high(row.saving))?
+            .set("run_id", run_id)
+    })
+    .await?;
+    put_all(c, "month_spread", &all.spreads, |insert, row| {
+        let [design, window] = row.point;
+        insert
+            .of_point(&grid.designs[design].name, grid.windows[window])?
+            .set("month", row.month)?
+            .set("sample_count", row.samples.cast_signed())?
+            .set("day_count", row.days.cast_signed())?
+            .set("standard_error_w", row.standard_error_w)?
+            .set("effective_sample_count", row.effective_samples)?
+            .set("run_id", run_id)
+    })
+    .await?;
+    put_all(c, "left_out", &all.left_out, |insert, row| {
+        let [design, window] = row.point;
+        insert
+            .of_point(&grid.designs[design].name, grid.windows[window])?
+            .set("kind", row.kind)?
+            .set("name", row.name.clone())?
+            .set("sample_count", row.samples.cast_signed())?
+            .set("month_count", row.months.cast_signed())?
+            .set("hvac_power_w", row.hvac_power_w)?
+            .set("relative_change", row.change)?
+            .set("reduction_vs_ptc", row.reduction_vs_ptc)?
+            .set("run_id", run_id)
+    })
+    .await
 }
 
 async fn put_annual(
@@ -402,72 +261,4 @@ async fn put_annual(
         .set("single_day_month_count", all.single_day_months.cast_signed())?
         .set("run_id", run_id)?;
     row.execute(c).await.map(|_| ())
-}
-
-async fn put_pairs(
-    c: &mut SqliteConnection,
-    run_id: i64,
-    grid: &StoredGrid,
-    rows: &[PairEnds],
-) -> Result<(), StoreError> {
-    let mut insert = Insert::into("design_interval");
-    for (n, row) in rows.iter().enumerate() {
-        insert = if n == 0 { insert } else { insert.another() };
-        let [design, other] = row.designs;
-        insert = insert
-            .of_point(&grid.designs[design].name, grid.windows[row.window])?
-            .set("other_design", grid.designs[other].name.clone())?
-            .set("other_takes_more_low_w", low(row.other_takes_more_w))?
-            .set("other_takes_more_high_w", high(row.other_takes_more_w))?
-            .set("saving_low", low(row.saving))?
-            .set("saving_high", high(row.saving))?
-            .set("run_id", run_id)?;
-    }
-    insert.execute(c).await.map(|_| ())
-}
-
-async fn put_spreads(
-    c: &mut SqliteConnection,
-    run_id: i64,
-    grid: &StoredGrid,
-    rows: &[MonthSpread],
-) -> Result<(), StoreError> {
-    let mut insert = Insert::into("month_spread");
-    for (n, row) in rows.iter().enumerate() {
-        insert = if n == 0 { insert } else { insert.another() };
-        let [design, window] = row.point;
-        insert = insert
-            .of_point(&grid.designs[design].name, grid.windows[window])?
-            .set("month", row.month)?
-            .set("sample_count", row.samples.cast_signed())?
-            .set("day_count", row.days.cast_signed())?
-            .set("standard_error_w", row.standard_error_w)?
-            .set("effective_sample_count", row.effective_samples)?
-            .set("run_id", run_id)?;
-    }
-    insert.execute(c).await.map(|_| ())
-}
-
-async fn put_left_out(
-    c: &mut SqliteConnection,
-    run_id: i64,
-    grid: &StoredGrid,
-    rows: &[LeftOut],
-) -> Result<(), StoreError> {
-    let mut insert = Insert::into("left_out");
-    for (n, row) in rows.iter().enumerate() {
-        insert = if n == 0 { insert } else { insert.another() };
-        let [design, window] = row.point;
-        insert = insert
-            .of_point(&grid.designs[design].name, grid.windows[window])?
-            .set("kind", row.kind)?
-            .set("name", row.name.clone())?
-            .set("sample_count", row.samples.cast_signed())?
-            .set("month_count", row.months.cast_signed())?
-            .set("hvac_power_w", row.hvac_power_w)?
-            .set("relative_change", row.change)?
-            .set("reduction_vs_ptc", row.reduction_vs_ptc)?
-            .set("run_id", run_id)?;
-    }
-    insert.execute(c).await.map(|_| ())
 }
