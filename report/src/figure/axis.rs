@@ -69,7 +69,7 @@ impl Scale {
         };
         let step = match axis.ticks {
             Ticks::Clock => clock_step(most - least, ticks),
-            Ticks::Months => 2.0,
+            Ticks::Months => 3.0,
             Ticks::Numbers | Ticks::None => step(most - least, ticks),
         };
         // A value that is a tick to rounding needs no further one.
@@ -140,6 +140,6 @@ mod tests {
         );
         let day = Axis::new("").with(Ticks::Clock).from(4.87).to(25.5);
         assert_eq!(labels(&day, &[], 4.0), ["06:00", "12:00", "18:00", "00:00"]);
-        assert_eq!(labels(&Axis::new("").with(Ticks::Months).from(0.5).to(12.5), &[], 6.0)[..2], ["Jan", "Mar"]);
+        assert_eq!(labels(&Axis::new("").with(Ticks::Months).from(0.5).to(12.5), &[], 6.0)[..2], ["Jan", "Apr"]);
     }
 }

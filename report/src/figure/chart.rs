@@ -186,7 +186,7 @@ fn legend(canvas: &mut Canvas, chart: &Chart, y: f64) -> f64 {
         canvas.text((x + KEY + 3.0, y + 2.7), name, Anchor::Start);
         x += wide;
     }
-    if seen.is_empty() { y - 6.0 } else { y + 4.0 }
+    if seen.is_empty() { y - 6.0 } else { y + 7.0 }
 }
 
 fn draw(canvas: &mut Canvas, panel: &Panel, place: &Place) {

@@ -178,7 +178,7 @@ fn curtains(study: &StudyReport, design: &str) -> Option<Chart> {
         let at = sign * t.of_optima?.value;
         Some(Mark::Limit { at, name: format!("{mode}: {} K", signed(at, 1)) })
     };
-    let mut marks = vec![of("curtains off", REST, false), of("curtains on", "#009e73", true)];
+    let mut marks = vec![of("curtains off", "#bbbbbb", false), of("curtains on", COOLING, true)];
     marks.extend(row.setpoints.curtains.iter().filter_map(limit));
     Some(Chart {
         title: format!("Air curtains of {design} at PMV {}", window(cloud.window)),
