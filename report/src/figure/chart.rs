@@ -263,6 +263,10 @@ fn draw_mark(canvas: &mut Canvas, mark: &Mark, place: &Place) {
             let word = Word { fill: colour, halo: true, ..Word::default() };
             match side {
                 Side::Above => canvas.word((x + 3.0, y - 2.5), name, Anchor::Start, word),
+                // On the right where the left has no room.
+                Side::Below if x - 3.0 - width_of(name, FONT) < left => {
+                    canvas.word((x + 3.0, y + 7.5), name, Anchor::Start, word);
+                }
                 Side::Below => canvas.word((x - 3.0, y + 7.5), name, Anchor::End, word),
             }
         }

@@ -101,18 +101,21 @@ fn profiles(study: &StudyReport, design: &str) -> Chart {
     let ambient = || study.clouds.iter().flat_map(|c| c.points.iter()).map(|p| p.ambient_temperature_c);
     let from_c = ambient().fold(f64::INFINITY, f64::min).floor();
     let to_c = ambient().fold(f64::NEG_INFINITY, f64::max).ceil();
-    let line = |name: &str, style: Style, of: &setpoints::Curve, [from_c, to_c]: [f64; 2]| {
-        let points = (0..=((to_c - from_c).max(0.0) * 4.0) as i64).map(|i| from_c + i as f64 / 4.0);
-        Mark::Line { name: name.to_owned(), style, points: points.map(|t| (t, of.at(t))).collect() }
-    };
     let cabin = || study.clouds.iter().flat_map(|c| c.points.iter()).map(|p| p.cabin_temperature_c);
     let [low_c, high_c] = [(f64::min as fn(f64, f64) -> f64, f64::INFINITY), (f64::max, f64::NEG_INFINITY)]
         .map(|(f, e)| cabin().fold(e, f));
+    let (low_c, high_c) = ((low_c / 5.0).floor() * 5.0, (high_c / 5.0).ceil() * 5.0);
+    let line = |name: &str, style: Style, of: &setpoints::Curve, [from_c, to_c]: [f64; 2]| {
+        let points = (0..=((to_c - from_c).max(0.0) * 4.0) as i64).map(|i| from_c + i as f64 / 4.0);
+        // What lies beyond the axes is left out.
+        let shown = |setpoint_c: f64| if (low_c..=high_c).contains(&setpoint_c) { setpoint_c } else { f64::NAN };
+        Mark::Line { name: name.to_owned(), style, points: points.map(|t| (t, shown(of.at(t)))).collect() }
+    };
     // The same axes on all panels.
     let panel = |title: String, marks| Panel {
         title,
         x: Axis::new("ambient °C").from(from_c).to(to_c),
-        y: Axis::new("cabin °C").from((low_c / 5.0).floor() * 5.0).to((high_c / 5.0).ceil() * 5.0),
+        y: Axis::new("cabin °C").from(low_c).to(high_c),
         marks,
     };
     let of_cloud = |cloud: &Cloud| {
