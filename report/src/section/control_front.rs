@@ -39,7 +39,7 @@ pub(super) fn controllers_chart(title: &str, told: &str, [x, y]: [&str; 2], fron
     };
     let mut line =
         |front: &Front| Mark::Line { name: front.name.clone(), style: style(front), points: front.points.clone() };
-    // A single point has its name beside it, on the left where another one lies in its way.
+    // A single point has its name beside it, on the left where another one lies in its way, and beneath all points.
     let all = || fronts.iter().flat_map(|front| &front.points).copied();
     let (wide, high) = all().fold((0.0, 0.0), |(w, h), (x, y)| (f64::max(w, x), f64::max(h, y)));
     let in_way = |(x, y): (f64, f64)| {
@@ -62,7 +62,7 @@ pub(super) fn controllers_chart(title: &str, told: &str, [x, y]: [&str; 2], fron
         panels: vec![Panel {
             x: Axis::new(x).from(0.0),
             y: Axis::new(y).from(0.0),
-            marks: fronts.iter().map(&mut line).chain(fronts.iter().filter_map(name)).collect(),
+            marks: fronts.iter().filter_map(name).chain(fronts.iter().map(&mut line)).collect(),
             ..Panel::default()
         }],
         height: 150.0,
