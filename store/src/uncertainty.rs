@@ -1,11 +1,11 @@
 //! How sure a year is: sums of its days, the intervals that are drawn from them, and the year without a part of it.
 
+use chrono::NaiveDate;
 use sqlx::Row;
 use sqlx::sqlite::SqliteConnection;
 
 use crate::row::{Insert, high, low, pack, put_all, unpack};
 use crate::{Store, StoreError, StoredGrid};
-use chrono::NaiveDate;
 
 /// Sums over the solved samples of the missions that begin on a day.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -109,7 +109,7 @@ pub struct LeftOut {
 pub struct Uncertainty {
     /// Months that have changed.
     pub days: Vec<MonthDays>,
-    /// Days of the year, and how many months have a single one.
+    /// Days on which a mission begins.
     pub day_count: u64,
     /// Months of a single day, whose spread nobody knows.
     pub single_day_months: u64,

@@ -1,6 +1,7 @@
 //! Samples by what they have in common, and the sums of a month.
 
 use cabin::{Operation, celsius};
+use ingest::mission::NO_ROUTE;
 use ingest::sample::Sample;
 use std::collections::BTreeMap;
 use store::{Class, ClassSum, MonthSums};
@@ -46,7 +47,7 @@ impl Classes {
         let warmth = (celsius(sample.disturbances.ambient_temperature_k) / WARMTH_K).floor();
         let name = format!("{} … {}", WARMTH_K * warmth, WARMTH_K * (warmth + 1.0));
         class("ambient temperature in °C", warmth as i64, name);
-        class("route", 0, sample.segment.route.clone().unwrap_or_else(|| "none".to_owned()));
+        class("route", 0, sample.segment.route.clone().unwrap_or_else(|| NO_ROUTE.to_owned()));
         OfSample { classes: self, places, sample }
     }
 

@@ -3,8 +3,8 @@
 use rayon::prelude::*;
 use store::{AnnualEnds, DaySum, Ends, MonthDays, PairEnds};
 
-use super::bootstrap::{Draws, interval};
-use super::{DAYS_OF_MONTH, Year};
+use super::bootstrap::{Draws, MONTHS, interval};
+use super::{Year, year_mean};
 
 /// Samples, power, power in heating, energy with a distance, distance.
 const QUANTITIES: usize = 5;
@@ -40,32 +40,14 @@ impl OfWindow {
     }
 }
 
-/// Months weigh by their days, within one samples alike (paper, eq. meanPower); those without samples do not weigh.
+/// What a design comes to; `of_month` gives its sums.
 fn means<'m>(of_month: &dyn Fn(usize) -> &'m [f64]) -> [f64; OUTPUTS] {
-    let (mut weight, mut power_w, mut heating_w, mut energy_j, mut distance_m) = (0.0, 0.0, 0.0, 0.0, 0.0);
-    for (month, days) in DAYS_OF_MONTH.into_iter().enumerate() {
-        let &[samples, of_power, of_heating, of_energy, of_distance] = of_month(month) else { continue };
-        if samples > 0.0 {
-            let of_sample = days / samples;
-            weight += days;
-            power_w += of_sample * of_power;
-            heating_w += of_sample * of_heating;
-            energy_j += of_sample * of_energy;
-            distance_m += of_sample * of_distance;
-        }
-    }
-    [
-        power_w / weight,
-        heating_w / weight,
-        (power_w - heating_w) / weight,
-        energy_j / distance_m / J_PER_KWH_AND_M_PER_KM,
-    ]
-}
-
-/// The same without any interval.
-pub fn unknown(year: &Year<'_>) -> (Vec<AnnualEnds>, Vec<PairEnds>) {
-    let pair = |designs, window| PairEnds { designs, window, other_takes_more_w: None, saving: None };
-    (vec![AnnualEnds::default(); year.points], pairs(year).map(|(designs, window)| pair(designs, window)).collect())
+    let months = (0..MONTHS).map(|month| match of_month(month) {
+        &[samples, power_w, heating_w, energy_j, distance_m] => (samples, [power_w, heating_w, energy_j, distance_m]),
+        _ => (0.0, [0.0; OUTPUTS]),
+    });
+    let [power_w, heating_w, energy_j, distance_m] = year_mean(months);
+    [power_w, heating_w, power_w - heating_w, energy_j / distance_m / J_PER_KWH_AND_M_PER_KM]
 }
 
 /// Every design with every other one in each window.

@@ -63,9 +63,10 @@ impl Draws {
         Self { days: months.len(), counts }
     }
 
-    /// The draws of every study.
+    /// The draws of every study; no year at all where a month has a single day, since nobody knows how far that month would
+    /// move.
     pub fn of_study(months: &[u8]) -> Self {
-        Self::new(months, REPLICATES, SEED)
+        Self::new(months, if single_day_months(months) > 0 { 0 } else { REPLICATES }, SEED)
     }
 
     /// A statistic of each drawn year, year by year: `outputs` values from the sums of twelve months, `quantities` each.
@@ -93,6 +94,11 @@ impl Draws {
         }
         values
     }
+}
+
+/// In how many months only one of the days lies.
+pub fn single_day_months(months: &[u8]) -> usize {
+    (1..=MONTHS as u8).filter(|month| months.iter().filter(|m| *m == month).count() == 1).count()
 }
 
 /// The interval of 90 % of a value of drawn years (percentile interval: Davison and Hinkley 1997, section 5.3.1); `None` where

@@ -3,11 +3,11 @@
 use chrono::{Datelike, NaiveDate};
 use chrono_tz::Tz;
 use rayon::prelude::*;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use store::{DrivenEnds, DrivenMission};
 
-use super::DAYS_OF_MONTH;
-use super::bootstrap::{Draws, MONTHS, Part, interval};
+use super::bootstrap::{Draws, Part, interval};
+use super::year_mean;
 
 /// Seconds, energy, energy of the optima.
 const QUANTITIES: usize = 3;
@@ -15,11 +15,10 @@ const QUANTITIES: usize = 3;
 /// The intervals of missions that are sorted by what they are of; unknown where a month has a single day.
 pub fn driven_ends(missions: &[DrivenMission], zone: Tz) -> Vec<DrivenEnds> {
     let day = |m: &DrivenMission| m.start.with_timezone(&zone).date_naive();
-    let days: std::collections::BTreeSet<NaiveDate> = missions.iter().map(day).collect();
+    let days: BTreeSet<NaiveDate> = missions.iter().map(day).collect();
     let months: Vec<u8> = days.iter().map(|day| day.month() as u8).collect();
-    let alone = (1..=MONTHS as u8).any(|month| months.iter().filter(|m| **m == month).count() == 1);
     let places: BTreeMap<NaiveDate, usize> = days.into_iter().zip(0..).collect();
-    let draws = if alone { None } else { Some(Draws::of_study(&months)) };
+    let draws = Draws::of_study(&months);
     let groups: Vec<&[DrivenMission]> = missions.chunk_by(|a, b| a.point == b.point).collect();
     let of_group = |group: &&[DrivenMission]| {
         let part = |m: &DrivenMission| Part {
@@ -28,20 +27,15 @@ pub fn driven_ends(missions: &[DrivenMission], zone: Tz) -> Vec<DrivenEnds> {
             sums: vec![m.seconds, m.seconds * m.power_w, m.seconds * m.static_power_w],
         };
         let parts: Vec<Part> = group.iter().map(part).collect();
-        let values = draws.as_ref().map(|draws| draws.each(&parts, QUANTITIES, 2, means));
-        let ends = |place: usize| interval(values.as_ref()?.chunks_exact(2).map(|v| v[place]));
+        let values = draws.each(&parts, QUANTITIES, 2, means);
+        let ends = |place: usize| interval(values.chunks_exact(2).map(|v| v[place]));
         DrivenEnds { point: group[0].point.clone(), power_w: ends(0), relative_difference: ends(1) }
     };
     groups.par_iter().map(of_group).collect()
 }
 
-/// Months by their days, within a month every second alike.
+/// Mean power, and how far it is from that of the optima; within a month every second counts alike.
 fn means(months: &[f64], out: &mut [f64]) {
-    let (mut weight, mut power_w, mut static_w) = (0.0, 0.0, 0.0);
-    for (of, days) in months.chunks_exact(QUANTITIES).zip(DAYS_OF_MONTH).filter(|(of, _)| of[0] > 0.0) {
-        weight += days;
-        power_w += days * of[1] / of[0];
-        static_w += days * of[2] / of[0];
-    }
-    out.copy_from_slice(&[power_w / weight, power_w / static_w - 1.0]);
+    let [power_w, static_w] = year_mean(months.chunks_exact(QUANTITIES).map(|of| (of[0], [of[1], of[2]])));
+    out.copy_from_slice(&[power_w, power_w / static_w - 1.0]);
 }

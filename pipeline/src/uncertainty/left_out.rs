@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use store::{LeftOut, MonthSums};
 
 use super::bootstrap::MONTHS;
-use super::{DAYS_OF_MONTH, Year};
+use super::{Year, year_mean};
 
 /// Samples and power of each month.
 type Months = [[f64; 2]; MONTHS];
@@ -88,12 +88,8 @@ fn less(all: &Months, part: &Months) -> Months {
 }
 
 fn mean_w(months: &Months) -> Option<f64> {
-    let (mut weight, mut power_w) = (0.0, 0.0);
-    for ([samples, power], days) in months.iter().zip(DAYS_OF_MONTH).filter(|(m, _)| m[0] > 0.0) {
-        weight += days;
-        power_w += days * power / samples;
-    }
-    (weight > 0.0).then(|| power_w / weight)
+    let [power_w] = year_mean(months.iter().map(|[samples, power_w]| (*samples, [*power_w])));
+    power_w.is_finite().then_some(power_w)
 }
 
 #[cfg(test)]

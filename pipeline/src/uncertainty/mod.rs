@@ -7,17 +7,27 @@ mod driven;
 mod left_out;
 mod months;
 
-use chrono::Datelike;
-use std::collections::BTreeMap;
+use chrono::{Datelike, NaiveDate};
+use std::collections::{BTreeMap, BTreeSet};
 use store::{MonthDays, MonthSums, Uncertainty};
 
-use self::bootstrap::{Draws, Part};
+use self::bootstrap::{Draws, MONTHS, Part, single_day_months};
 pub use self::days::{DaysOfMonth, day};
 pub use self::driven::driven_ends;
 
 /// Days of the months in a year without 29 February (paper, eq. meanPower).
-const DAYS_OF_MONTH: [f64; bootstrap::MONTHS] =
-    [31.0, 28.0, 31.0, 30.0, 31.0, 30.0, 31.0, 31.0, 30.0, 31.0, 30.0, 31.0];
+const DAYS_OF_MONTH: [f64; MONTHS] = [31.0, 28.0, 31.0, 30.0, 31.0, 30.0, 31.0, 31.0, 30.0, 31.0, 30.0, 31.0];
+
+/// Means of the year of what months sum up, each with how many samples or seconds it has: months by their days, within one all
+/// alike (paper, eq. meanPower); those without any do not weigh. Not a number where no month has any.
+fn year_mean<const N: usize>(months: impl Iterator<Item = (f64, [f64; N])>) -> [f64; N] {
+    let (mut weight, mut sums) = (0.0, [0.0; N]);
+    for ((count, of_month), days) in months.zip(DAYS_OF_MONTH).filter(|((count, _), _)| *count > 0.0) {
+        weight += days;
+        sums.iter_mut().zip(of_month).for_each(|(sum, value)| *sum += days * value / count);
+    }
+    sums.map(|sum| sum / weight)
+}
 
 /// The year as days: every month with the sums of its days.
 struct Year<'m> {
@@ -25,13 +35,13 @@ struct Year<'m> {
     points: usize,
     windows: usize,
     /// Every day once, with its place.
-    places: BTreeMap<chrono::NaiveDate, usize>,
+    places: BTreeMap<NaiveDate, usize>,
 }
 
 impl<'m> Year<'m> {
     fn new(mut months: Vec<&'m MonthDays>, points: usize, windows: usize) -> Self {
         months.sort_by_key(|m| m.month);
-        let days: std::collections::BTreeSet<_> = months.iter().flat_map(|m| m.days.iter().copied()).collect();
+        let days: BTreeSet<_> = months.iter().flat_map(|m| m.days.iter().copied()).collect();
         Self { months, points, windows, places: days.into_iter().zip(0..).collect() }
     }
 
@@ -56,15 +66,8 @@ pub fn uncertainty(
 ) -> Uncertainty {
     let year = Year::new(kept.iter().chain(&new).collect(), points, windows);
     let months: Vec<u8> = year.places.keys().map(|day| day.month() as u8).collect();
-    let mut days_of_month = [0; bootstrap::MONTHS];
-    months.iter().for_each(|month| days_of_month[usize::from(*month) - 1] += 1);
-    let single_day_months = days_of_month.iter().filter(|days| **days == 1).count() as u64;
-    // Nobody knows how far a month would move that has been seen on one day.
-    let (annual, pairs) = if single_day_months > 0 {
-        annual::unknown(&year)
-    } else {
-        annual::intervals(&year, &Draws::of_study(&months), ptc)
-    };
+    let single_day_months = single_day_months(&months) as u64;
+    let (annual, pairs) = annual::intervals(&year, &Draws::of_study(&months), ptc);
     let spreads = months::spreads(&year);
     let left_out = left_out::left_out(&year, classes, ptc);
     let day_count = months.len() as u64;
