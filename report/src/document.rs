@@ -79,6 +79,12 @@ impl Section {
         Self { level: 2, title: title.into(), ..Self::default() }
     }
 
+    /// A figure, drawn, at this place of the text.
+    pub fn with_figure(mut self, file: &'static str, caption: &'static str, svg: String) -> Self {
+        self.figures.push(Figure { file, svg });
+        self.with(Block::Figure { file, caption })
+    }
+
     pub fn with(mut self, block: impl Into<Option<Block>>) -> Self {
         self.blocks.extend(block.into());
         self

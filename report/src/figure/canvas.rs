@@ -12,7 +12,11 @@ const TEMPLATE: &str = include_str!("../../templates/figure.svg");
 pub(super) const WIDTH: f64 = 241.0;
 /// Size of all texts but the title: 7 pt is the least that journals print.
 pub(super) const FONT: f64 = 7.5;
-pub(super) const TITLE_FONT: f64 = 8.5;
+const TITLE_FONT: f64 = 8.5;
+/// From one line of text to the next.
+pub(super) const LINE: f64 = 9.5;
+/// Around everything.
+pub(super) const MARGIN: f64 = 4.0;
 pub(super) const INK: &str = "#1a1a1a";
 pub(super) const PALE_INK: &str = "#555555";
 /// Pixels that a point is shown with where nobody says how wide.
@@ -93,6 +97,27 @@ impl Canvas {
         self.0.push(context! { text, x, y, size, bold, turned, anchor, fill });
     }
 
+    /// Title and what is told beneath it, on as many lines as they need; gives where they end.
+    pub fn heading(&mut self, title: &str, told: &str) -> f64 {
+        let bold = Word { size: TITLE_FONT, bold: true, ..Word::default() };
+        // Bold letters are wider.
+        let y = self.lines(MARGIN, title, 1.06 * TITLE_FONT, bold);
+        self.remark(y, told)
+    }
+
+    /// A remark from a height on; gives where it ends.
+    pub fn remark(&mut self, y: f64, text: &str) -> f64 {
+        self.lines(y, text, FONT, Word { fill: PALE_INK, ..Word::default() })
+    }
+
+    fn lines(&mut self, mut y: f64, text: &str, measured_as: f64, word: Word) -> f64 {
+        for line in wrapped(text, measured_as, WIDTH - 2.0 * MARGIN) {
+            y += LINE;
+            self.word((MARGIN, y), &line, Anchor::Start, word);
+        }
+        y
+    }
+
     /// The drawing as SVG of a height, with a title and words for those who cannot see it.
     pub fn svg(self, height: f64, title: &str, told: &str) -> Result<String, ReportError> {
         let mut environment = Environment::new();
@@ -163,7 +188,7 @@ pub(super) fn width_of(text: &str, size: f64) -> f64 {
 }
 
 /// The lines of a text that are at most so wide.
-pub(super) fn wrapped(text: &str, size: f64, width: f64) -> Vec<String> {
+fn wrapped(text: &str, size: f64, width: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
         match lines.last_mut() {

@@ -3,7 +3,7 @@
 
 use cabin::{HeatFlows, Temperatures, celsius};
 
-use super::canvas::{Anchor, Canvas, FONT, INK, PALE_INK, Pen, TITLE_FONT, WIDTH, Word, path, rectangle, wrapped};
+use super::canvas::{Anchor, Canvas, INK, Pen, Word, path, rectangle};
 use super::palette::{IN_TIME, STEADY, SUN};
 use crate::ReportError;
 
@@ -76,18 +76,7 @@ struct Flow {
 pub fn heat_flow_svg(figure: &HeatFlowFigure) -> Result<String, ReportError> {
     let (t, f) = (&figure.temperatures, &figure.flows);
     let mut canvas = Canvas::default();
-    let mut top = 4.0;
-    let bold = Word { size: TITLE_FONT, bold: true, ..Word::default() };
-    for line in wrapped(&figure.title, TITLE_FONT * 1.06, WIDTH - 8.0) {
-        top += 9.5;
-        canvas.word((4.0, top), &line, Anchor::Start, bold);
-    }
-    let pale = Word { fill: PALE_INK, ..Word::default() };
-    for line in wrapped(&figure.description, FONT, WIDTH - 8.0) {
-        top += 9.5;
-        canvas.word((4.0, top), &line, Anchor::Start, pale);
-    }
-    top += 6.0;
+    let top = canvas.heading(&figure.title, &figure.description) + 6.0;
     let flows = flows(f);
     let strongest = flows.iter().map(|flow| flow.watt.abs()).fold(4e3, f64::max);
     for flow in &flows {
@@ -124,16 +113,12 @@ pub fn heat_flow_svg(figure: &HeatFlowFigure) -> Result<String, ReportError> {
     for flow in &flows {
         label(&mut canvas, flow, top);
     }
-    let mut y = top + HEIGHT + 3.0;
     let power = format!(
         "kW, in the direction of the arrow. Full: convection, conduction, air; open: radiation; blue: electric power. \
          The air unit draws {:.2} kW.",
         figure.air_unit_power_w / 1e3 + 0.0
     );
-    for line in wrapped(&power, FONT, WIDTH - 8.0) {
-        y += 9.5;
-        canvas.word((4.0, y), &line, Anchor::Start, pale);
-    }
+    let y = canvas.remark(top + HEIGHT + 3.0, &power);
     canvas.svg(y + 5.0, &figure.title, &figure.description)
 }
 

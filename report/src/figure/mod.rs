@@ -6,8 +6,10 @@ mod axis;
 mod canvas;
 mod chart;
 mod heat_flow;
+mod marks;
 pub(crate) mod palette;
 
 pub(crate) use axis::{Axis, Ticks};
-pub(crate) use chart::{Chart, Mark, Panel, Side, chart_svg};
+pub(crate) use chart::{Chart, Panel, chart_svg};
 pub use heat_flow::{HeatFlowFigure, heat_flow_svg};
+pub(crate) use marks::{Mark, Side};

@@ -16,6 +16,19 @@ pub(crate) const LIMIT: &str = "#555555";
 /// Sun.
 pub(crate) const SUN: &str = "#e69f00";
 pub(crate) const BLACK: &str = "#000000";
+/// What lies between cold and warm.
+const BETWEEN: &str = "#009e73";
+
+/// Dashes as in SVG.
+pub(crate) const DASHED: &str = "3 1.5";
+pub(crate) const DOTTED: &str = "1.2 1.2";
+
+/// Three of a kind, from cold to warm: by colour, and in grey by their dashes.
+pub(crate) const FROM_COLD_TO_WARM: [Style; 3] = [
+    Style { colour: COOLING, dash: "", width: 1.1, marker: None },
+    Style { colour: BETWEEN, dash: DASHED, width: 1.1, marker: None },
+    Style { colour: HEATING, dash: DOTTED, width: 1.1, marker: None },
+];
 
 /// Colours of designs in the order in which they are given to names that have none of their own.
 const COLOURS: [&str; 8] = ["#d55e00", "#e69f00", "#0072b2", "#56b4e9", "#009e73", "#cc79a7", "#000000", "#8a6d00"];

@@ -5,7 +5,7 @@ use store::{ControlPoint, ControlYear, Outside};
 
 use super::control_front::{Coordinate, Front, Verdict, controllers_chart, verdicts};
 use super::weights_note;
-use crate::document::{Block, DataTable, Figure, Section, Span, Table};
+use crate::document::{Block, DataTable, Section, Span, Table};
 use crate::figure::{Chart, chart_svg};
 use crate::numbers::{of_point, optional, percent, signed_percent_within, text, watts, window, within};
 use crate::{ReportError, StudyReport};
@@ -49,8 +49,7 @@ pub(super) fn section(study: &StudyReport) -> Result<Option<Section>, ReportErro
         ("control_pareto.svg", "Annual power over the mean vote", votes(&years)),
         ("control_outside.svg", "Annual power over the passenger-hours outside", hours_outside(study, &design, shown)),
     ] {
-        section.figures.push(Figure { file, svg: chart_svg(&chart)? });
-        section = section.with(Block::Figure { file, caption });
+        section = section.with_figure(file, caption, chart_svg(&chart)?);
     }
     if let Some(table) = trained(&years) {
         section = section

@@ -4,7 +4,7 @@
 use cabin::ComfortWindow;
 
 use crate::StudyReport;
-use crate::figure::palette::{BLACK, LIMIT, Marker, Style};
+use crate::figure::palette::{BLACK, DASHED, LIMIT, Marker, Style};
 use crate::figure::{Axis, Chart, Mark, Panel, Side};
 
 /// A controller's line, or its point.
@@ -30,7 +30,7 @@ impl Front {
 pub(super) fn controllers_chart(title: &str, told: &str, [x, y]: [&str; 2], fronts: &[Front]) -> Chart {
     let mut next = 0;
     let mut style = |front: &Front| match front.name.as_str() {
-        _ if front.is_steady => Style { colour: LIMIT, dash: "3 1.5", width: 1.0, marker: Some(Marker::Cross) },
+        _ if front.is_steady => Style { colour: LIMIT, dash: DASHED, width: 1.0, marker: Some(Marker::Cross) },
         "extracted" => Style { colour: BLACK, dash: "", width: 1.1, marker: Some(Marker::OpenCircle) },
         _ => {
             next += 1;

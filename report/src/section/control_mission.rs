@@ -2,8 +2,8 @@
 
 use store::{ControlMinute, ControlTrace};
 
-use super::missions::{clock_h, clock_label};
-use crate::document::{Block, Figure, Section};
+use super::mission_hour::{clock_h, clock_label};
+use crate::document::Section;
 use crate::figure::palette::{LIMIT, Style};
 use crate::figure::{Axis, Chart, Mark, Panel, Ticks, chart_svg};
 use crate::numbers::window;
@@ -18,11 +18,9 @@ pub(super) fn section(study: &StudyReport) -> Result<Option<Section>, ReportErro
     }
     let mut section = Section { level: 0, ..Section::default() };
     let (file, caption) = ("causal_time_resolved.svg", "A hot mission under causal controllers");
-    section.figures.push(Figure { file, svg: chart_svg(&in_time(study))? });
-    section = section.with(Block::Figure { file, caption });
+    section = section.with_figure(file, caption, chart_svg(&in_time(study))?);
     let (file, caption) = ("causal_pareto_front.svg", "The same mission under all controllers");
-    section.figures.push(Figure { file, svg: chart_svg(&pareto(study))? });
-    Ok(Some(section.with(Block::Figure { file, caption })))
+    Ok(Some(section.with_figure(file, caption, chart_svg(&pareto(study))?)))
 }
 
 fn name(trace: &ControlTrace) -> String {

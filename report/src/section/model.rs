@@ -5,8 +5,8 @@ use cabin::{Cop, PmvModel, Vehicle, clothing_insulation_clo, kelvin, named_cooli
 use solve::nlp::Surrogate;
 use store::DesignRow;
 
-use crate::document::{Block, Figure, Section};
-use crate::figure::palette::{COOLING, HEATING, LIMIT, Marker, Style};
+use crate::document::Section;
+use crate::figure::palette::{COOLING, DASHED, DOTTED, FROM_COLD_TO_WARM, HEATING, LIMIT, Marker, Style};
 use crate::figure::{Axis, Chart, Mark, Panel, Side, chart_svg};
 use crate::numbers::signed;
 use crate::{ReportError, StudyReport};
@@ -27,8 +27,7 @@ pub(super) fn section(study: &StudyReport) -> Result<Option<Section>, ReportErro
         ("model_parameters.svg", "Coefficients of performance, clothing and vote", parameters(study)),
         ("model_approximations.svg", "The paper's approximations", approximations(&study.vehicle)),
     ] {
-        section.figures.push(Figure { file, svg: chart_svg(&chart)? });
-        section = section.with(Block::Figure { file, caption });
+        section = section.with_figure(file, caption, chart_svg(&chart)?);
     }
     Ok(Some(section))
 }
@@ -94,7 +93,7 @@ fn curves(
     }
     let mut marks = Vec::new();
     // In grey both colours are alike.
-    let dashes = if colour == HEATING { ["", "3 1.5", "1.2 1.2"] } else { ["6 2 1.5 2", "5 1.5", "2 2"] };
+    let dashes = if colour == HEATING { ["", DASHED, DOTTED] } else { ["6 2 1.5 2", "5 1.5", "2 2"] };
     let shown = names.into_iter().filter_map(|name| Some((name, find(name)?)));
     for (i, (name, cop)) in shown.enumerate() {
         let data = match find(&format!("{name}-rows")) {
@@ -129,9 +128,8 @@ fn vote_model(vehicle: &Vehicle, ambient_c: f64) -> PmvModel {
 
 /// Lines of equal vote. The vote rises with the mean radiant temperature: halving finds it.
 fn votes(vehicle: &Vehicle) -> Vec<Mark> {
-    let looks = [(-10.0, COOLING, ""), (10.0, "#009e73", "3 1.5"), (30.0, HEATING, "1.2 1.2")];
     let mut marks = Vec::new();
-    for (ambient_c, colour, dash) in looks {
+    for (i, (ambient_c, style)) in [-10.0, 10.0, 30.0].into_iter().zip(FROM_COLD_TO_WARM).enumerate() {
         let model = vote_model(vehicle, ambient_c);
         for vote in [-1.0, 0.0, 1.0] {
             let radiant = |air_c: f64| {
@@ -145,12 +143,12 @@ fn votes(vehicle: &Vehicle) -> Vec<Mark> {
             let on = between([5.0, 35.0], 90).map(|air_c| (air_c, radiant(air_c)));
             let points: Vec<(f64, f64)> = on.filter(|(_, r)| (0.0..=50.0).contains(r)).collect();
             // Each temperature has its labels where the others have none.
-            let place = points.len() * (2 + looks.iter().position(|l| l.0 == ambient_c).unwrap_or(0) * 2) / 8;
+            let place = points.len() * (i + 1) / 4;
             let Some(&at) = points.get(place) else { continue };
             let name =
                 if vote == -1.0 { format!("PMV at {} °C ambient", signed(ambient_c, 0)) } else { String::new() };
-            marks.push(Mark::Line { name, style: Style::line(colour, dash, 1.0), points });
-            marks.push(Mark::Label { at, name: signed(vote, 0), colour, side: Side::Above });
+            marks.push(Mark::Line { name, style, points });
+            marks.push(Mark::Label { at, name: signed(vote, 0), colour: style.colour, side: Side::Above });
         }
     }
     marks
@@ -166,23 +164,22 @@ fn approximations(vehicle: &Vehicle) -> Chart {
         y: Axis::new("root in √K").from(0.0),
         marks: vec![
             line("exact", Style::line(COOLING, "", 1.1), exact),
-            line("smooth", Style::line(HEATING, "3 1.5", 1.1), smooth),
+            line("smooth", Style::line(HEATING, DASHED, 1.1), smooth),
         ],
     }];
     if *vehicle == Vehicle::default() {
         let (surrogate, model) = (Surrogate::stored(), vote_model(vehicle, APPROXIMATION_AT_C));
         let clo = clothing_insulation_clo(kelvin(APPROXIMATION_AT_C), vehicle.clothing_floor_clo);
-        let looks = [(10.0, COOLING, ""), (20.0, "#009e73", "3 1.5"), (30.0, HEATING, "1.2 1.2")];
-        let of = |(radiant_c, colour, dash): (f64, &'static str, &'static str)| {
+        let of = |(radiant_c, style): (f64, Style)| {
             let error = |air_c: f64| (air_c, model.at(air_c, radiant_c).pmv - surrogate.vote(clo, air_c, radiant_c));
             let name = format!("radiant {radiant_c:.0} °C");
-            line(name, Style::line(colour, dash, 1.0), between([5.0, 35.0], 240).map(error))
+            line(name, style, between([5.0, 35.0], 240).map(error))
         };
         panels.push(Panel {
             title: "PMV less that of the paper's network, at 10 °C ambient".to_owned(),
             x: Axis::new("cabin temperature in °C"),
             y: Axis::new("error of PMV"),
-            marks: looks.map(of).into(),
+            marks: [10.0, 20.0, 30.0].into_iter().zip(FROM_COLD_TO_WARM).map(of).collect(),
         });
     }
     Chart {

@@ -6,7 +6,7 @@ use chrono::Timelike;
 use store::MissionTrace;
 
 use super::findings::Verdict;
-use super::missions::{shown_operation, starts};
+use super::mission_hour::{shown_operation, starts};
 use crate::StudyReport;
 use crate::document::{Block, DataTable, Section, Table};
 use crate::numbers::window;

@@ -1,6 +1,6 @@
 //! Annual power over the comfort that is asked for (paper, figure `pareto-fronts-thermal`).
 
-use crate::document::{Block, Figure, Section, Span};
+use crate::document::{Block, Section, Span};
 use crate::figure::palette::{Style, of_designs};
 use crate::figure::{Axis, Chart, Mark, Panel, Side, chart_svg};
 use crate::{ReportError, StudyReport};
@@ -27,8 +27,7 @@ pub(super) fn section(study: &StudyReport) -> Result<Section, ReportError> {
     let mut section = Section::new("Pareto fronts");
     let fronts = fronts(study);
     if fronts.iter().any(|f| !f.points.is_empty()) {
-        section.figures.push(Figure { file: FILE, svg: chart_svg(&chart(&fronts))? });
-        section = section.with(Block::Figure { file: FILE, caption: "Pareto fronts" });
+        section = section.with_figure(FILE, "Pareto fronts", chart_svg(&chart(&fronts))?);
     } else {
         section = section.with(Block::words("No symmetric comfort window is solved: there is no front to show."));
     }

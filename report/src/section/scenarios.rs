@@ -7,8 +7,8 @@ use shading::hour_of_year;
 use store::{DisturbanceBin, VoteBin};
 
 use super::setpoints::nearest_windows;
-use crate::document::{Block, Figure, Section};
-use crate::figure::palette::{COOLING, HEATING, IN_TIME, Marker, SUN, Style};
+use crate::document::Section;
+use crate::figure::palette::{FROM_COLD_TO_WARM, IN_TIME, Marker, SUN, Style};
 use crate::figure::{Axis, Chart, Mark, Panel, Ticks, chart_svg};
 use crate::numbers::window;
 use crate::{ReportError, StudyReport};
@@ -24,8 +24,7 @@ pub(super) fn section(study: &StudyReport) -> Result<Option<Section>, ReportErro
         ("pmv_range.svg", "Votes at the optima", votes(study)),
     ] {
         if let Some(chart) = chart {
-            section.figures.push(Figure { file, svg: chart_svg(&chart)? });
-            section = section.with(Block::Figure { file, caption });
+            section = section.with_figure(file, caption, chart_svg(&chart)?);
         }
     }
     Ok(Some(section))
@@ -34,19 +33,19 @@ pub(super) fn section(study: &StudyReport) -> Result<Option<Section>, ReportErro
 /// Three days of the year (paper, figure `shadow-fraction`); none where no shade is stored.
 fn shadow(study: &StudyReport) -> Option<Chart> {
     const YEAR: i32 = 2022;
-    let looks = [
-        ("10 December", 12, 10, COOLING, "", Marker::Circle),
-        ("21 March", 3, 21, "#009e73", "3 1.5", Marker::OpenSquare),
-        ("24 July", 7, 24, HEATING, "1.2 1.2", Marker::Triangle),
+    let days = [
+        ("10 December", 12, 10, Marker::Circle),
+        ("21 March", 3, 21, Marker::OpenSquare),
+        ("24 July", 7, 24, Marker::Triangle),
     ];
-    let of = |(name, month, day, colour, dash, marker): (&str, u32, u32, &'static str, &'static str, Marker)| {
+    let of = |((name, month, day, marker), style): ((&str, u32, u32, Marker), Style)| {
         let midnight = NaiveDate::from_ymd_opt(YEAR, month, day)?.and_time(NaiveTime::MIN);
         let start = study.zone.from_local_datetime(&midnight).earliest()?.with_timezone(&Utc);
         let at = |hour: u32| {
             let value = study.shadow.get(hour_of_year(start + TimeDelta::hours(hour.into())));
             Some((f64::from(hour), *value?))
         };
-        let style = Style { colour, dash, width: 1.0, marker: Some(marker) };
+        let style = Style { marker: Some(marker), ..style };
         Some(Mark::Line { name: name.to_owned(), style, points: (0..=24).filter_map(at).collect() })
     };
     (!study.shadow.is_empty()).then(|| Chart {
@@ -56,7 +55,7 @@ fn shadow(study: &StudyReport) -> Option<Chart> {
         panels: vec![Panel {
             x: Axis::new(format!("local time ({})", study.zone)).from(0.0).to(24.0).with(Ticks::Clock),
             y: Axis::new("shadow fraction").from(0.0).to(1.0),
-            marks: looks.into_iter().filter_map(of).collect(),
+            marks: days.into_iter().zip(FROM_COLD_TO_WARM).filter_map(of).collect(),
             ..Panel::default()
         }],
         height: 100.0,
@@ -125,11 +124,9 @@ fn votes(study: &StudyReport) -> Option<Chart> {
             windows.push(row.window);
         }
     }
-    let looks = [(COOLING, ""), ("#009e73", "3 1.5"), (HEATING, "1.2 1.2")];
     let mut marks = Vec::new();
-    for (of, (colour, dash)) in nearest_windows(&windows).into_iter().zip(looks) {
+    for (of, style) in nearest_windows(&windows).into_iter().zip(FROM_COLD_TO_WARM) {
         let bins = rows.iter().filter(|b| b.window == of).map(|b| (b.ends, 100.0 * b.weight));
-        let style = Style::line(colour, dash, 1.1);
         marks.push(Mark::Line { name: format!("PMV {}", window(of)), style, points: outline(bins) });
     }
     (!marks.is_empty()).then(|| Chart {

@@ -4,16 +4,15 @@ use cabin::{ComfortWindow, OperatingMode};
 use setpoints::{CurtainThreshold, Profile, published};
 use store::{Cloud, CloudPoint, SetpointRow};
 
-use crate::document::{Block, DataTable, Figure, Section, Table};
-use crate::figure::palette::{BLACK, COOLING, HEATING, REST, Style};
+use crate::document::{Block, DataTable, Section, Table};
+use crate::figure::palette::{BLACK, COOLING, DASHED, HEATING, REST, Style};
 use crate::figure::{Axis, Chart, Mark, Panel, chart_svg};
 use crate::numbers::{optional, percent, signed, text, window};
 use crate::{ReportError, StudyReport};
 
-const DASH: &str = "3 1.5";
 /// Published setpoints beside the clouds: name, colour and dashes. The paper's second is not public.
 const SHOWN: [(&str, &str, &str); 3] =
-    [("vdv-comfort", "#cc79a7", ""), ("vbz-18", "#009e73", DASH), ("vecto", "#8a6d00", "1.5 1.5")];
+    [("vdv-comfort", "#cc79a7", ""), ("vbz-18", "#009e73", DASHED), ("vecto", "#8a6d00", "1.5 1.5")];
 
 pub(super) fn section(study: &StudyReport) -> Result<Option<Section>, ReportError> {
     if study.setpoints.is_empty() {
@@ -28,12 +27,10 @@ pub(super) fn section(study: &StudyReport) -> Result<Option<Section>, ReportErro
     );
     let Some(design) = study.clouds.first().map(|c| &c.design) else { return Ok(Some(section)) };
     let (file, caption) = ("temperature_setpoints.svg", "Optima with the extracted setpoints, and published ones");
-    section.figures.push(Figure { file, svg: chart_svg(&profiles(study, design))? });
-    section = section.with(Block::Figure { file, caption });
+    section = section.with_figure(file, caption, chart_svg(&profiles(study, design))?);
     if let Some(figure) = curtains(study, design) {
         let (file, caption) = ("aircurtain_setpoint.svg", "When the air curtains run, with their thresholds");
-        section.figures.push(Figure { file, svg: chart_svg(&figure)? });
-        section = section.with(Block::Figure { file, caption });
+        section = section.with_figure(file, caption, chart_svg(&figure)?);
     }
     let columns = [
         "heats to °C (outside)",
@@ -127,7 +124,7 @@ fn profiles(study: &StudyReport, design: &str) -> Chart {
         let mut marks = by_mode(cloud, |p| (p.ambient_temperature_c, p.cabin_temperature_c));
         if let Some(row) = row {
             marks.extend(profile("heating profile", "", &row.setpoints.heating));
-            marks.extend(profile("cooling profile", DASH, &row.setpoints.cooling));
+            marks.extend(profile("cooling profile", DASHED, &row.setpoints.cooling));
         }
         panel(format!("PMV {}", window(cloud.window)), marks)
     };
