@@ -65,13 +65,13 @@ def main():
             rows.append((name, figures(varied(folder, number, change, run))))
             (folder / f"varied-{number}.db").unlink()
         put("findings.md", "varied", varied_table(rows))
-        put("findings.md", "findings", findings(folder / "report" / "paper_comparison.csv"))
+        put("findings.md", "findings", table_of(folder / "report" / "paper_comparison.csv", FINDINGS))
         put("findings.md", "samples", samples(base))
         put("findings.md", "sure", sure(base))
     if wanted("simulation.md"):
         put("simulation.md", "year", simulated(base))
     if wanted("figures.md"):
-        put("figures.md", "numbers", numbers(folder / "report" / "paper_numbers.csv"))
+        put("figures.md", "numbers", table_of(folder / "report" / "paper_numbers.csv", NUMBERS))
 
 
 def varied(folder, number, change, run):
@@ -160,20 +160,23 @@ def varied_table(rows):
     return out
 
 
-def findings(path):
-    out = ["| finding | paper | this study | |", "|---|---|---|---|"]
+def table_of(path, columns):
+    """Columns of a table of the report, each with what stands above it and how it is aligned."""
+    heads, lines, _ = zip(*columns)
+    out = [("| " + " | ".join(heads) + " |").replace("|  |", "| |"), "|" + "|".join(lines) + "|"]
     with path.open(newline="") as f:
-        for row in csv.DictReader(f):
-            out.append(f"| {row['finding']} | {row['paper']} | {row['this_study']} | {row['verdict']} |")
+        out += ["| " + " | ".join(row[column] for _, _, column in columns) + " |" for row in csv.DictReader(f)]
     return out
 
 
-def numbers(path):
-    out = ["| figure | number | paper | this study | |", "|---|---|---:|---:|---|"]
-    with path.open(newline="") as f:
-        for row in csv.DictReader(f):
-            out.append(f"| {row['figure']} | {row['number']} | {row['paper']} | {row['this_study']} | {row['verdict']} |")
-    return out
+FINDINGS = [("finding", "---", "finding"), ("paper", "---", "paper"), ("this study", "---", "this_study"), ("", "---", "verdict")]
+NUMBERS = [
+    ("figure", "---", "figure"),
+    ("number", "---", "number"),
+    ("paper", "---:", "paper"),
+    ("this study", "---:", "this_study"),
+    ("", "---", "verdict"),
+]
 
 
 def samples(database):

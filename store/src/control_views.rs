@@ -111,10 +111,7 @@ impl Store {
     /// # Errors
     /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn control_years(&mut self) -> Result<Vec<ControlYear>, StoreError> {
-        let sql = "SELECT a.* FROM control_annual AS a
-            JOIN hvac_design AS d ON d.name = a.design JOIN comfort_window AS w USING (pmv_min, pmv_max)
-            ORDER BY d.position, w.position, a.controller";
-        self.select(sql, |r| {
+        self.in_study_order("control_annual", ", t.controller", |r| {
             Ok(ControlYear {
                 point: point(r)?,
                 passenger_hours: r.try_get("passenger_hours")?,
@@ -129,10 +126,7 @@ impl Store {
     /// # Errors
     /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn control_classes(&mut self) -> Result<Vec<ControlClass>, StoreError> {
-        let sql = "SELECT a.* FROM control_class AS a
-            JOIN hvac_design AS d ON d.name = a.design JOIN comfort_window AS w USING (pmv_min, pmv_max)
-            ORDER BY d.position, w.position, a.controller, a.class_order";
-        self.select(sql, |r| {
+        self.in_study_order("control_class", ", t.controller, t.class_order", |r| {
             Ok(ControlClass { sorted_by: r.try_get("sorted_by")?, class: r.try_get("class")?, point: point(r)? })
         })
     }

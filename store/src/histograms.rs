@@ -53,11 +53,7 @@ impl Store {
     /// # Errors
     /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn vote_bins(&mut self) -> Result<Vec<VoteBin>, StoreError> {
-        let sql = "SELECT h.* FROM pmv_histogram AS h
-            JOIN hvac_design AS d ON d.name = h.design
-            JOIN comfort_window AS w ON w.pmv_min = h.pmv_min AND w.pmv_max = h.pmv_max
-            ORDER BY d.position, w.position, h.bin_from";
-        self.select(sql, |r| {
+        self.in_study_order("pmv_histogram", ", t.bin_from", |r| {
             Ok(VoteBin {
                 design: r.try_get("design")?,
                 window: window(r)?,

@@ -78,11 +78,7 @@ impl Store {
     /// # Errors
     /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn annual_intervals(&mut self) -> Result<Vec<AnnualInterval>, StoreError> {
-        let sql = "SELECT i.* FROM annual_interval AS i
-            JOIN hvac_design AS d ON d.name = i.design
-            JOIN comfort_window AS w ON w.pmv_min = i.pmv_min AND w.pmv_max = i.pmv_max
-            ORDER BY d.position, w.position";
-        self.select(sql, |r| {
+        self.in_study_order("annual_interval", "", |r| {
             Ok(AnnualInterval {
                 design: r.try_get("design")?,
                 window: window(r)?,
@@ -118,11 +114,7 @@ impl Store {
     /// # Errors
     /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn month_spreads(&mut self) -> Result<Vec<SpreadRow>, StoreError> {
-        let sql = "SELECT i.* FROM month_spread AS i
-            JOIN hvac_design AS d ON d.name = i.design
-            JOIN comfort_window AS w ON w.pmv_min = i.pmv_min AND w.pmv_max = i.pmv_max
-            ORDER BY d.position, w.position, i.month";
-        self.select(sql, |r| {
+        self.in_study_order("month_spread", ", t.month", |r| {
             Ok(SpreadRow {
                 design: r.try_get("design")?,
                 window: window(r)?,
@@ -140,11 +132,7 @@ impl Store {
     /// # Errors
     /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn left_out(&mut self) -> Result<Vec<LeftOutRow>, StoreError> {
-        let sql = "SELECT i.* FROM left_out AS i
-            JOIN hvac_design AS d ON d.name = i.design
-            JOIN comfort_window AS w ON w.pmv_min = i.pmv_min AND w.pmv_max = i.pmv_max
-            ORDER BY d.position, w.position, i.kind DESC, i.name";
-        self.select(sql, |r| {
+        self.in_study_order("left_out", ", t.kind DESC, t.name", |r| {
             Ok(LeftOutRow {
                 design: r.try_get("design")?,
                 window: window(r)?,

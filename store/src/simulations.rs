@@ -162,10 +162,7 @@ impl Store {
     /// # Errors
     /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn simulated_years(&mut self) -> Result<Vec<SimulatedYear>, StoreError> {
-        let sql = "SELECT a.* FROM simulation_annual AS a
-            JOIN hvac_design AS d ON d.name = a.design JOIN comfort_window AS w USING (pmv_min, pmv_max)
-            ORDER BY d.position, w.position, a.controller";
-        self.select(sql, |r| {
+        self.in_study_order("simulation_annual", ", t.controller", |r| {
             Ok(SimulatedYear {
                 design: r.try_get("design")?,
                 window: window(r)?,
@@ -183,10 +180,7 @@ impl Store {
     /// # Errors
     /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn simulated_classes(&mut self) -> Result<Vec<SimulatedClass>, StoreError> {
-        let sql = "SELECT a.* FROM simulation_class AS a
-            JOIN hvac_design AS d ON d.name = a.design JOIN comfort_window AS w USING (pmv_min, pmv_max)
-            ORDER BY d.position, w.position, a.class_order";
-        self.select(sql, |r| {
+        self.in_study_order("simulation_class", ", t.class_order", |r| {
             Ok(SimulatedClass {
                 sorted_by: r.try_get("sorted_by")?,
                 class: r.try_get("class")?,

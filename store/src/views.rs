@@ -107,11 +107,7 @@ impl Store {
     /// # Errors
     /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn annual(&mut self) -> Result<Vec<AnnualRow>, StoreError> {
-        let sql = "SELECT a.* FROM annual_average AS a
-            JOIN hvac_design AS d ON d.name = a.design
-            JOIN comfort_window AS w ON w.pmv_min = a.pmv_min AND w.pmv_max = a.pmv_max
-            ORDER BY d.position, w.position";
-        self.select(sql, |r| {
+        self.in_study_order("annual_average", "", |r| {
             Ok(AnnualRow {
                 design: r.try_get("design")?,
                 window: window(r)?,
@@ -131,10 +127,7 @@ impl Store {
     /// # Errors
     /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn monthly(&mut self) -> Result<Vec<MonthlyRow>, StoreError> {
-        let sql = "SELECT m.* FROM monthly_average AS m
-            JOIN hvac_design AS d ON d.name = m.design JOIN comfort_window AS w USING (pmv_min, pmv_max)
-            ORDER BY d.position, w.position, m.month";
-        self.select(sql, |r| {
+        self.in_study_order("monthly_average", ", t.month", |r| {
             Ok(MonthlyRow {
                 design: r.try_get("design")?,
                 window: window(r)?,
@@ -164,10 +157,7 @@ impl Store {
     /// # Errors
     /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn limit_shares(&mut self) -> Result<Vec<LimitShare>, StoreError> {
-        let sql = "SELECT s.* FROM limit_share AS s
-            JOIN hvac_design AS d ON d.name = s.design JOIN comfort_window AS w USING (pmv_min, pmv_max)
-            ORDER BY d.position, w.position";
-        self.select(sql, |r| {
+        self.in_study_order("limit_share", "", |r| {
             Ok(LimitShare {
                 design: r.try_get("design")?,
                 window: window(r)?,
@@ -245,6 +235,27 @@ impl Store {
                         .collect()
                 })
                 .collect()
+        })
+    }
+
+    /// The rows of a table or view that has design and window, in the order of the study; `then` orders those of the same point:
+    /// nothing, or columns of `t` with a comma before each.
+    pub(crate) fn in_study_order<T>(
+        &mut self,
+        table: &'static str,
+        then: &'static str,
+        row: impl Fn(&SqliteRow) -> Result<T, sqlx::Error>,
+    ) -> Result<Vec<T>, StoreError> {
+        let sql = format!(
+            "SELECT t.* FROM {table} AS t
+            JOIN hvac_design AS d ON d.name = t.design
+            JOIN comfort_window AS w ON w.pmv_min = t.pmv_min AND w.pmv_max = t.pmv_max
+            ORDER BY d.position, w.position{then}"
+        );
+        self.drive(async |c| {
+            // The text is built from constants alone.
+            let rows = sqlx::query(AssertSqlSafe(sql)).fetch_all(c).await?;
+            Ok(rows.iter().map(row).collect::<Result<_, _>>()?)
         })
     }
 
