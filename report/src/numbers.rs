@@ -44,10 +44,13 @@ pub(crate) fn percent(share: Option<f64>) -> String {
 }
 
 /// A number with as many digits as its interval lets stand, at most so many decimals, and its interval: the last digit is the
-/// first one of half its width.
+/// first one of half its width; a number that is surer than by half keeps two digits.
 pub(crate) fn within(value: f64, ends: Ends, decimals: i32) -> String {
     let Some([low, high]) = ends.filter(|[low, high]| high > low) else { return rounded(value, -decimals) };
-    let place = (((high - low) / 2.0).log10().floor() as i32).max(-decimals);
+    let half = (high - low) / 2.0;
+    let first = half.log10().floor() as i32;
+    let second = || value.abs().log10().floor() as i32 - 1;
+    let place = if half < 0.5 * value.abs() { first.min(second()) } else { first }.max(-decimals);
     format!("{} ({} … {})", rounded(value, place), rounded(low, place), rounded(high, place))
 }
 
@@ -134,7 +137,10 @@ mod tests {
         assert_eq!(within(1314.9, Some([1243.6, 1391.5]), 0), "1310 (1240 … 1390)");
         assert_eq!(within(59.0, Some([58.5, 59.4]), 1), "59.0 (58.5 … 59.4)");
         assert_eq!(within(7.2, Some([3.1, 11.0]), 1), "7 (3 … 11)");
+        assert_eq!(within(8034.0, Some([6980.0, 9130.0]), 0), "8000 (7000 … 9100)");
+        assert_eq!(within(7.24, Some([6.1, 8.3]), 1), "7.2 (6.1 … 8.3)");
         assert_eq!(within(0.0, Some([0.0, 0.0]), 1), "0.0");
+        assert_eq!(within(0.0, Some([0.0, 0.4]), 1), "0.0 (0.0 … 0.4)");
         assert_eq!(within(-8.562, Some([-8.785, -8.333]), 1), "−8.6 (−8.8 … −8.3)");
         assert_eq!(within(1234.6, None, 0), "1235");
     }
