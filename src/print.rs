@@ -33,7 +33,7 @@ pub fn run(study: &Study, stages: &[Stage], done: &Done, elapsed: Duration) -> R
         say(format_args!("{line}"))?;
     }
     if stages.contains(&Stage::Report) {
-        say(format_args!("report: {}", study.report_dir.join("report.md").display()))?;
+        say(format_args!("report: {}", study.report_dir.join("report.html").display()))?;
     }
     match (stages, summary.pending()) {
         ([Stage::Report], 1..) => Ok(Ending::Pending),

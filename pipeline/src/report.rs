@@ -103,10 +103,10 @@ fn write(study: &Study, store: &mut Store, progress: &dyn Progress) -> Result<Wr
     };
     let left = left_behind(study, store)?;
     let ours: Vec<&str> = report::FILES.into_iter().chain(left.iter().map(String::as_str)).collect();
-    let bytes: Vec<(&str, &[u8])> = files.iter().map(|file| (file.name, file.bytes.as_slice())).collect();
+    let bytes: Vec<(&str, &[u8])> = files.iter().map(|file| (file.name.as_str(), file.bytes.as_slice())).collect();
     folder::replace(&study.report_dir, &bytes, &ours, &[&study.database, &study.base])
         .map_err(|source| PipelineError::Write { path: study.report_dir.clone(), source })?;
-    let hashed = |file: &ReportFile| (file.name.to_owned(), blake3::hash(&file.bytes).to_hex().to_string());
+    let hashed = |file: &ReportFile| (file.name.clone(), blake3::hash(&file.bytes).to_hex().to_string());
     Ok(Written { files: files.iter().map(hashed).collect(), headline: report::headline(&content) })
 }
 
@@ -160,6 +160,7 @@ fn content(study: &Study, store: &mut Store) -> Result<StudyReport, PipelineErro
         zone: study.zone,
         designs: study.design_rows.clone(),
         annual: store.annual()?,
+        energies: store.energies()?,
         annual_intervals: store.annual_intervals()?,
         design_intervals: store.design_intervals()?,
         vehicle: study.vehicle.clone(),

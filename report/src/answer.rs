@@ -1,42 +1,33 @@
-//! The question of the study, answered.
+//! The question of the study, answered in two sentences of its own names.
 
 use std::fmt::Write as _;
 
 use crate::numbers::{percent_within, watts, window, within};
-use crate::study_report::{SHOWN_LIMIT, StudyReport};
+use crate::study_report::StudyReport;
 
-/// The limit of a stricter window to compare with ±1.
-const STRICTER: f64 = 0.5;
-
-/// The question of the study, answered in two sentences.
+/// The cheapest design, whatever it is called, beside the one that others are compared with, and what more comfort costs. Means
+/// are over the hours in service, which are not those of a year.
 pub(crate) fn answer(study: &StudyReport) -> Option<String> {
     let shown = study.shown_window()?;
-    let power = |d: &str, w| study.annual_power_w(d, w);
-    let cheapest = study.cheapest(shown)?;
+    let (design, power_w) = study.cheapest(shown)?;
     let mut text = format!(
-        "Within PMV {}, the design {} is the cheapest: {} W averaged over the year",
+        "Within PMV {}, {design} is the cheapest design: {} W in the mean over the hours in service, months weighted by their days",
         window(shown),
-        cheapest.0,
-        within(cheapest.1, study.annual_ends(cheapest.0, shown), 0)
+        within(power_w, study.annual_ends(design, shown), 0)
     );
-    match power("ptc", shown) {
-        Some(reference) if cheapest.0 != "ptc" && reference > 0.0 => {
-            let ends = study.interval(cheapest.0, shown).and_then(|r| r.reduction_vs_ptc);
-            let _ = write!(text, ", {} less than ptc.", percent_within(1.0 - cheapest.1 / reference, ends));
+    let reference = study.reference(shown).filter(|(other, _)| *other != design);
+    match reference.and_then(|(other, _)| Some((other, study.saving(design, other, shown)?))) {
+        Some((other, (saving, ends))) => {
+            let _ = write!(text, "; {} less than {other}.", percent_within(saving, ends));
         }
-        _ => text.push('.'),
+        None => text.push('.'),
     }
-    let stricter = study.windows().into_iter().find(|w| w.is_symmetric() && w.pmv_limit() == STRICTER);
-    if let Some((window_of, stricter)) = stricter
-        .filter(|_| shown.is_symmetric() && shown.pmv_limit() == SHOWN_LIMIT)
-        .and_then(|w| Some((w, power(cheapest.0, w)?)))
+    let stricter = study.windows().into_iter().find(|w| w.is_symmetric() && w.pmv_limit() == shown.pmv_limit() / 2.0);
+    if let Some((stricter, more_w)) = stricter
+        .filter(|_| shown.is_symmetric() && shown.pmv_limit() > 0.0)
+        .and_then(|w| Some((w, study.annual_power_w(design, w)? - power_w)))
     {
-        let _ = write!(
-            text,
-            " Comfort within PMV {} costs {} W more.",
-            window(window_of),
-            watts(Some(stricter - cheapest.1))
-        );
+        let _ = write!(text, " Comfort within PMV {} costs {} W more.", window(stricter), watts(Some(more_w)));
     }
     Some(text)
 }

@@ -1,14 +1,17 @@
 //! What a report consists of, before anything is rendered: sections with prose, tables and figures as data.
 
+use crate::figure::{Chart, HeatFlowFigure};
+
 /// A section. Its blocks come one after the other; `tables` are those that spreadsheets get, with every digit.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Section {
     /// 1 for the title of the report, 2 for a section, 3 for a part of one, 0 for one that goes on without a title.
     pub level: usize,
     pub title: String,
+    /// What the section answers.
+    pub question: Prose,
     pub blocks: Vec<Block>,
     pub tables: Vec<DataTable>,
-    pub figures: Vec<Figure>,
 }
 
 /// A piece of a section.
@@ -21,11 +24,38 @@ pub(crate) enum Block {
     Quote(Prose),
     List(Vec<Prose>),
     Table(Table),
-    /// A figure of the section, by its file.
-    Figure {
-        file: &'static str,
-        caption: &'static str,
-    },
+    Figure(Figure),
+    /// What a reader may conclude.
+    Means(Prose),
+    /// What a reader may not conclude.
+    Limits(Prose),
+    /// The same of several things, of which a reader chooses one.
+    Choice(Choice),
+}
+
+/// The same blocks of several things; where nobody can choose, those of the one `shown`.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Choice {
+    /// What is chosen.
+    pub of: &'static str,
+    pub options: Vec<(String, Vec<Block>)>,
+    pub shown: usize,
+}
+
+/// A figure, before it is drawn.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Figure {
+    /// Its files without an ending.
+    pub file: &'static str,
+    pub caption: String,
+    pub picture: Picture,
+}
+
+/// What there is to draw.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Picture {
+    Chart(Box<Chart>),
+    HeatFlow(Box<HeatFlowFigure>),
 }
 
 /// Text with marks.
@@ -47,6 +77,8 @@ pub(crate) enum Span {
 pub(crate) struct Table {
     pub columns: Vec<Column>,
     pub rows: Vec<Vec<String>>,
+    /// The table of data that it shows.
+    pub file: &'static str,
 }
 
 /// A column: words stand left, numbers right.
@@ -62,16 +94,9 @@ pub(crate) type DataColumn<'c, T> = (&'static str, &'c dyn Fn(&T) -> String);
 /// A table to compute with.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct DataTable {
-    pub file: &'static str,
+    pub file: String,
     pub columns: Vec<&'static str>,
     pub rows: Vec<Vec<String>>,
-}
-
-/// A figure, drawn.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Figure {
-    pub file: &'static str,
-    pub svg: String,
 }
 
 impl Section {
@@ -79,15 +104,33 @@ impl Section {
         Self { level: 2, title: title.into(), ..Self::default() }
     }
 
-    /// A figure, drawn, at this place of the text.
-    pub fn with_figure(mut self, file: &'static str, caption: &'static str, svg: String) -> Self {
-        self.figures.push(Figure { file, svg });
-        self.with(Block::Figure { file, caption })
+    /// The question that the section answers.
+    pub fn asking(mut self, question: &'static str) -> Self {
+        self.question = vec![Span::Text(question)];
+        self
     }
 
     pub fn with(mut self, block: impl Into<Option<Block>>) -> Self {
         self.blocks.extend(block.into());
         self
+    }
+
+    /// A chart, drawn at this place of the text.
+    pub fn with_chart(self, file: &'static str, caption: impl Into<String>, chart: Chart) -> Self {
+        self.with(Block::chart(file, caption, chart))
+    }
+
+    /// All figures that are shown where nobody chooses.
+    pub fn figures(&self) -> Vec<&Figure> {
+        fn of(blocks: &[Block]) -> Vec<&Figure> {
+            let each = blocks.iter().map(|block| match block {
+                Block::Figure(figure) => vec![figure],
+                Block::Choice(choice) => choice.options.get(choice.shown).map_or_else(Vec::new, |o| of(&o.1)),
+                _ => Vec::new(),
+            });
+            each.flatten().collect()
+        }
+        of(&self.blocks)
     }
 }
 
@@ -96,14 +139,28 @@ impl Block {
     pub fn words(text: &'static str) -> Self {
         Self::Paragraph(vec![Span::Text(text)])
     }
+
+    /// What it means, in words without marks.
+    pub fn means(text: &'static str) -> Self {
+        Self::Means(vec![Span::Text(text)])
+    }
+
+    /// What it does not say, in words without marks.
+    pub fn limits(text: &'static str) -> Self {
+        Self::Limits(vec![Span::Text(text)])
+    }
+
+    pub fn chart(file: &'static str, caption: impl Into<String>, chart: Chart) -> Self {
+        Self::Figure(Figure { file, caption: caption.into(), picture: Picture::Chart(Box::new(chart)) })
+    }
 }
 
 impl Table {
-    /// A table with the given columns, first words, then numbers.
-    pub fn new(words: &[&str], numbers: &[&str], rows: Vec<Vec<String>>) -> Self {
+    /// A table with the given columns, first words, then numbers, and the file that has all of it.
+    pub fn new(file: &'static str, words: &[&str], numbers: &[&str], rows: Vec<Vec<String>>) -> Self {
         let words = words.iter().map(|c| Column::Words((*c).to_owned()));
         let numbers = numbers.iter().map(|c| Column::Numbers((*c).to_owned()));
-        Self { columns: words.chain(numbers).collect(), rows }
+        Self { columns: words.chain(numbers).collect(), rows, file }
     }
 }
 
@@ -123,7 +180,7 @@ impl DataTable {
         columns: &[DataColumn<'_, T>],
     ) -> Self {
         Self {
-            file,
+            file: file.to_owned(),
             columns: columns.iter().map(|(name, _)| *name).collect(),
             rows: rows.into_iter().map(|row| columns.iter().map(|(_, cell)| cell(row)).collect()).collect(),
         }

@@ -11,15 +11,15 @@ pub fn headline(study: &StudyReport) -> Vec<String> {
     let Some(answer) = answer(study) else { return Vec::new() };
     let mut lines = vec![answer];
     let shown = study.shown_window();
-    let binding = study.limit_shares.iter().rev().find(|s| Some(s.window) == shown && s.solved_count > 0);
-    if let (Some(s), Some(shown)) = (binding, shown) {
-        let share = |count: u64| percent(Some(count as f64 / s.solved_count as f64));
+    let cheapest = shown.and_then(|shown| study.cheapest(shown));
+    let of = |s: &&store::LimitShare| Some(s.window) == shown && cheapest.is_some_and(|(design, _)| design == s.design);
+    if let (Some(s), Some(shown)) = (study.limit_shares.iter().find(of), shown) {
         lines.push(format!(
-            "With {} at PMV {}, the lower limit binds in {} of the hours, the air unit cools in {}.",
+            "With {} at PMV {}, the lower limit binds in {} of the time, the air unit cools in {}, weighted alike.",
             s.design,
             window(shown),
-            share(s.lower_count),
-            share(s.cooling_count)
+            percent(Some(s.lower_weight)),
+            percent(Some(s.cooling_weight))
         ));
     }
     let findings = paper_findings(study);

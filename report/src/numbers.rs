@@ -43,15 +43,30 @@ pub(crate) fn percent(share: Option<f64>) -> String {
     share.map_or_else(|| "–".to_owned(), |s| format!("{:.1} %", 100.0 * s + 0.0))
 }
 
-/// A number with as many digits as its interval lets stand, at most so many decimals, and its interval: the last digit is the
-/// first one of half its width; a number that is surer than by half keeps two digits.
-pub(crate) fn within(value: f64, ends: Ends, decimals: i32) -> String {
-    let Some([low, high]) = ends.filter(|[low, high]| high > low) else { return rounded(value, -decimals) };
+/// A number with as many digits as its interval lets stand, and the ends of this in the same digits.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Sure {
+    pub value: String,
+    pub ends: Option<[String; 2]>,
+}
+
+/// At most so many decimals: the last digit is the first one of half the interval's width; a number that is surer than by half
+/// keeps two digits.
+pub(crate) fn sure(value: f64, ends: Ends, decimals: i32) -> Sure {
+    let Some([low, high]) = ends.filter(|[low, high]| high > low) else {
+        return Sure { value: rounded(value, -decimals), ends: None };
+    };
     let half = (high - low) / 2.0;
     let first = half.log10().floor() as i32;
     let second = || value.abs().log10().floor() as i32 - 1;
     let place = if half < 0.5 * value.abs() { first.min(second()) } else { first }.max(-decimals);
-    format!("{} ({} … {})", rounded(value, place), rounded(low, place), rounded(high, place))
+    Sure { value: rounded(value, place), ends: Some([rounded(low, place), rounded(high, place)]) }
+}
+
+/// The same in a line, with the interval in brackets.
+pub(crate) fn within(value: f64, ends: Ends, decimals: i32) -> String {
+    let Sure { value, ends } = sure(value, ends, decimals);
+    ends.map_or_else(|| value.clone(), |[low, high]| format!("{value} ({low} … {high})"))
 }
 
 /// A share with its interval, in percent with at most one decimal.
@@ -59,6 +74,16 @@ pub(crate) fn percent_within(share: f64, ends: Ends) -> String {
     let of = ends.map(|ends| ends.map(|end| 100.0 * end));
     let text = within(100.0 * share, of, 1);
     text.split_once(" (").map_or_else(|| format!("{text} %"), |(value, rest)| format!("{value} % ({rest}"))
+}
+
+/// With four digits, without zeros that say nothing.
+pub(crate) fn significant(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return if value == 0.0 { "0".to_owned() } else { "–".to_owned() };
+    }
+    let place = value.abs().log10().floor() as i32 - 3;
+    let text = rounded(value, place);
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
 /// To a power of ten.
@@ -143,5 +168,9 @@ mod tests {
         assert_eq!(within(0.0, Some([0.0, 0.4]), 1), "0.0 (0.0 … 0.4)");
         assert_eq!(within(-8.562, Some([-8.785, -8.333]), 1), "−8.6 (−8.8 … −8.3)");
         assert_eq!(within(1234.6, None, 0), "1235");
+        assert_eq!(
+            [0.0, -0.125, 1234.56, 12345.6, 21.0, 0.1 + 0.2].map(significant),
+            ["0", "−0.125", "1235", "12350", "21", "0.3"]
+        );
     }
 }

@@ -1,13 +1,13 @@
 //! Everything that a report says: rows of the database, and what the study rests on.
 
-use cabin::{ComfortWindow, Vehicle};
+use cabin::{ComfortWindow, Devices, Heating, Vehicle};
 use chrono_tz::Tz;
 use ingest::FileRecord;
 use store::{
     AnnualInterval, AnnualRow, Cloud, ControlClass, ControlPoint, ControlTrace, ControlYear, DesignInterval, DesignRow,
-    DisturbanceBin, DrivenEnds, Ends, ExclusionCount, LeftOutRow, LimitShare, MissionTrace, MonthRow, MonthlyRow,
-    Outside, SetpointRow, SimulatedClass, SimulatedYear, SimulationFailure, SpreadRow, StatusCounts, TraceWindow,
-    VoteBin,
+    DisturbanceBin, DrivenEnds, Ends, EnergyRow, ExclusionCount, LeftOutRow, LimitShare, MissionTrace, MonthRow,
+    MonthlyRow, Outside, SetpointRow, SimulatedClass, SimulatedYear, SimulationFailure, SpreadRow, StatusCounts,
+    TraceWindow, VoteBin,
 };
 use study::assumptions::Assumption;
 
@@ -33,6 +33,8 @@ pub struct StudyReport {
     pub designs: Vec<DesignRow>,
     /// Annual means by design and window.
     pub annual: Vec<AnnualRow>,
+    /// Energy by design and window.
+    pub energies: Vec<EnergyRow>,
     /// The bus.
     pub vehicle: Vehicle,
     /// Shadow fractions at the full hours of a year of 365 days from 1 January 00:00 UTC; empty where none are stored.
@@ -148,6 +150,26 @@ impl StudyReport {
     pub(crate) fn cheapest(&self, window: ComfortWindow) -> Option<(&str, f64)> {
         let of = self.designs.iter().filter_map(|d| Some((d.name.as_str(), self.annual_power_w(&d.name, window)?)));
         of.min_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// The design that others are compared with: resistive heating and nothing else where the study has it, else the dearest.
+    pub(crate) fn reference(&self, window: ComfortWindow) -> Option<(&str, f64)> {
+        let of = |d: &'_ DesignRow| self.annual_power_w(&d.name, window);
+        let plain = |d: &&DesignRow| d.heating == Heating::Ptc && d.devices == Devices::NONE && of(d).is_some();
+        let dearest = || {
+            let solved = self.designs.iter().filter(|d| of(d).is_some());
+            solved.max_by(|a, b| of(a).unwrap_or_default().total_cmp(&of(b).unwrap_or_default()))
+        };
+        let found = self.designs.iter().find(plain).or_else(dearest)?;
+        Some((&found.name, of(found)?))
+    }
+
+    /// What a design saves of the power of another one, with its interval.
+    pub(crate) fn saving(&self, design: &str, other: &str, window: ComfortWindow) -> Option<(f64, Ends)> {
+        let same = |p: &&DesignInterval| p.window == window && p.designs[0] == design && p.designs[1] == other;
+        let ends = self.design_intervals.iter().find(same).and_then(|p| p.ends);
+        let other_w = self.annual_power_w(other, window).filter(|w| *w > 0.0)?;
+        Some((1.0 - self.annual_power_w(design, window)? / other_w, ends))
     }
 
     pub(crate) fn annual_row(&self, design: &str, window: ComfortWindow) -> Option<&AnnualRow> {

@@ -62,4 +62,4 @@ pub use stages::{RecordedStage, SettingRow, StageRecord};
 pub use traces::{MissionTrace, TraceRow, TraceWindow};
 pub use uncertainty::{AnnualEnds, DaySum, Ends, LeftOut, MonthDays, MonthSpread, PairEnds, Uncertainty};
 pub use verification::{CheckRow, VerificationRow};
-pub use views::{AnnualRow, ExclusionCount, LimitShare, MonthRow, MonthlyRow, OptimumRow};
+pub use views::{AnnualRow, EnergyRow, ExclusionCount, LimitShare, MonthRow, MonthlyRow, OptimumRow};

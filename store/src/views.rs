@@ -81,6 +81,19 @@ pub struct LimitShare {
     pub outside_range_count: u64,
 }
 
+/// A row of `annual_energy`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EnergyRow {
+    /// Design.
+    pub design: String,
+    /// Comfort window.
+    pub window: ComfortWindow,
+    /// HVAC energy in kWh for a kilometre; `None` where the telemetry has no distances.
+    pub kwh_per_km: Option<f64>,
+    /// Hours in operation of a bus in a year.
+    pub operating_hours_per_bus_year: Option<f64>,
+}
+
 /// How many segments gave no sample for one reason.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ExclusionCount {
@@ -148,6 +161,21 @@ impl Store {
                 month: r.try_get("month")?,
                 sample_count: count(r, "sample_count")?,
                 sample_weight: r.try_get("sample_weight")?,
+            })
+        })
+    }
+
+    /// The table `annual_energy`, in the order of the study.
+    ///
+    /// # Errors
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
+    pub fn energies(&mut self) -> Result<Vec<EnergyRow>, StoreError> {
+        self.in_study_order("annual_energy", "", |r| {
+            Ok(EnergyRow {
+                design: r.try_get("design")?,
+                window: window(r)?,
+                kwh_per_km: r.try_get("kwh_per_km")?,
+                operating_hours_per_bus_year: r.try_get("operating_hours_per_bus_year")?,
             })
         })
     }

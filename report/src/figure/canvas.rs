@@ -51,18 +51,71 @@ pub(super) struct Pen {
 
 /// A drawing that grows.
 #[derive(Debug, Default)]
-pub(super) struct Canvas(Vec<Value>);
+pub(super) struct Canvas {
+    groups: Vec<Group>,
+    /// Whom the next shapes belong to.
+    of: Of,
+}
+
+/// Whom a shape belongs to: readers of a page choose series.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) enum Of {
+    /// Axes and words, which are always there.
+    #[default]
+    Figure,
+    /// Series by their places among those of the figure: there while one of them is.
+    Series(Vec<usize>),
+    /// What the legend says of a series.
+    Legend(usize),
+}
+
+/// Shapes that belong together.
+#[derive(Debug)]
+struct Group {
+    of: Of,
+    shapes: Vec<Value>,
+}
+
+/// Where a drawing stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Form {
+    /// A file of its own.
+    File,
+    /// Within a page, which says of what size.
+    Inline,
+}
+
+/// A finished drawing.
+#[derive(Debug)]
+pub(crate) struct Drawing {
+    groups: Vec<Group>,
+    height: f64,
+    title: String,
+    told: String,
+}
 
 impl Canvas {
+    /// What follows belongs to these series.
+    pub fn of(&mut self, of: Of) {
+        self.of = of;
+    }
+
+    fn push(&mut self, shape: Value) {
+        match self.groups.last_mut() {
+            Some(group) if group.of == self.of => group.shapes.push(shape),
+            _ => self.groups.push(Group { of: self.of.clone(), shapes: vec![shape] }),
+        }
+    }
+
     /// A line along a path.
     pub fn line(&mut self, d: &str, pen: Pen) {
         let Pen { colour, width, dash } = pen;
-        self.0.push(context! { d, fill => "none", stroke => colour, stroke_width => coordinate(width), dash });
+        self.push(context! { d, fill => "none", stroke => colour, stroke_width => coordinate(width), dash });
     }
 
     /// Dots along a path of pieces without length.
     pub fn dots(&mut self, d: &str, colour: &str, width: f64) {
-        self.0.push(
+        self.push(
             context! { d, fill => "none", stroke => colour, stroke_width => coordinate(width), dash => "", round => true },
         );
     }
@@ -70,13 +123,13 @@ impl Canvas {
     /// An area within a path.
     pub fn area(&mut self, d: &str, fill: &str, opacity: f64) {
         let fill_opacity = if opacity < 1.0 { coordinate(opacity) } else { String::new() };
-        self.0.push(context! { d, fill, fill_opacity });
+        self.push(context! { d, fill, fill_opacity });
     }
 
     /// An area with an edge.
     pub fn edged(&mut self, d: &str, fill: &str, pen: Pen) {
         let Pen { colour, width, dash } = pen;
-        self.0.push(context! { d, fill, stroke => colour, stroke_width => coordinate(width), dash });
+        self.push(context! { d, fill, stroke => colour, stroke_width => coordinate(width), dash });
     }
 
     pub fn text(&mut self, (x, y): (f64, f64), text: &str, anchor: Anchor) {
@@ -92,9 +145,9 @@ impl Canvas {
         // Two texts, as renderers differ in what they paint first.
         let (x, y, size) = (&x, &y, &size);
         if halo {
-            self.0.push(context! { text, x, y, size, bold, turned, anchor, fill => "#ffffff", halo });
+            self.push(context! { text, x, y, size, bold, turned, anchor, fill => "#ffffff", halo });
         }
-        self.0.push(context! { text, x, y, size, bold, turned, anchor, fill });
+        self.push(context! { text, x, y, size, bold, turned, anchor, fill });
     }
 
     /// Title and what is told beneath it, on as many lines as they need; gives where they end.
@@ -118,14 +171,31 @@ impl Canvas {
         y
     }
 
-    /// The drawing as SVG of a height, with a title and words for those who cannot see it.
-    pub fn svg(self, height: f64, title: &str, told: &str) -> Result<String, ReportError> {
+    /// The drawing, of a height, with a title and words for those who cannot see it.
+    pub fn finished(self, height: f64, title: &str, told: &str) -> Drawing {
+        Drawing { groups: self.groups, height, title: title.to_owned(), told: told.to_owned() }
+    }
+}
+
+impl Drawing {
+    /// As SVG.
+    pub fn svg(&self, form: Form) -> Result<String, ReportError> {
         let mut environment = Environment::new();
         environment.set_auto_escape_callback(|_| AutoEscape::Html);
         environment.add_template("figure.svg", TEMPLATE)?;
+        let group = |group: &Group| {
+            let places = |of: &[usize]| of.iter().map(usize::to_string).collect::<Vec<_>>().join(" ");
+            let (series, legend) = match &group.of {
+                Of::Figure => (String::new(), String::new()),
+                Of::Series(of) => (places(of), String::new()),
+                Of::Legend(of) => (String::new(), of.to_string()),
+            };
+            context! { series, legend, shapes => &group.shapes }
+        };
         let content = context! {
-            title, told, shapes => self.0, width => WIDTH, height => coordinate(height),
-            shown_width => coordinate(SHOWN * WIDTH), shown_height => coordinate(SHOWN * height),
+            title => &self.title, told => &self.told, groups => self.groups.iter().map(group).collect::<Vec<_>>(),
+            width => WIDTH, height => coordinate(self.height), inline => form == Form::Inline,
+            shown_width => coordinate(SHOWN * WIDTH), shown_height => coordinate(SHOWN * self.height),
         };
         Ok(environment.get_template("figure.svg")?.render(content)?)
     }
@@ -170,7 +240,7 @@ pub(super) fn rectangle((x0, y0): (f64, f64), (x1, y1): (f64, f64)) -> String {
 }
 
 /// Two decimals, so that a platform's arithmetic cannot change bytes.
-pub(super) fn coordinate(value: f64) -> String {
+pub(crate) fn coordinate(value: f64) -> String {
     let text = format!("{:.2}", value + 0.0);
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }

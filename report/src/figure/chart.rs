@@ -1,11 +1,8 @@
 //! Charts: panels in columns, each with two axes, and marks on them. Every figure over axes is one of these.
 
-use std::collections::BTreeSet;
-
 use super::axis::{Axis, Scale, Ticks};
-use super::canvas::{Anchor, Canvas, FONT, LINE, MARGIN, Pen, WIDTH, Word, path, rectangle, width_of};
+use super::canvas::{Anchor, Canvas, Drawing, FONT, LINE, MARGIN, Of, Pen, WIDTH, Word, path, rectangle, width_of};
 use super::marks::{Mark, Place, dot, draw_mark, extent, marker, pen};
-use crate::ReportError;
 
 /// A figure over axes.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -35,9 +32,37 @@ const TICK: Pen = Pen { colour: "#e2e2e2", width: 0.5, dash: "" };
 const EDGE: Pen = Pen { colour: "#666666", width: 0.6, dash: "" };
 const KEY: f64 = 17.0;
 
-/// The figure as SVG.
-pub(crate) fn chart_svg(chart: &Chart) -> Result<String, ReportError> {
+impl Chart {
+    /// The names of all series, in the order of the legend.
+    pub fn series(&self) -> Vec<&str> {
+        let mut names: Vec<&str> = Vec::new();
+        for mark in self.panels.iter().flat_map(|p| &p.marks) {
+            if let Mark::Line { name, points, .. } | Mark::Dots { name, points, .. } = mark
+                && !(name.is_empty() || points.is_empty() || names.contains(&name.as_str()))
+            {
+                names.push(name);
+            }
+        }
+        names
+    }
+}
+
+/// Whom a mark belongs to.
+fn of_mark(mark: &Mark, series: &[&str]) -> Of {
+    let places: Vec<usize> = mark.series().iter().filter_map(|s| series.iter().position(|name| name == s)).collect();
+    if places.is_empty() { Of::Figure } else { Of::Series(places) }
+}
+
+/// The figure.
+pub(crate) fn chart_drawn(chart: &Chart) -> Drawing {
+    drawn(chart).0
+}
+
+/// The figure, and where its panels lie.
+pub(super) fn drawn(chart: &Chart) -> (Drawing, Vec<Place>) {
     let mut canvas = Canvas::default();
+    let series = chart.series();
+    let mut places = Vec::new();
     let told_to = canvas.heading(&chart.title, &chart.told);
     let mut y = legend(&mut canvas, chart, told_to + 3.0);
     let columns = chart.columns.max(1);
@@ -57,7 +82,8 @@ pub(crate) fn chart_svg(chart: &Chart) -> Result<String, ReportError> {
             let left = MARGIN + column_width * i as f64 + margins[i];
             let width = column_width - margins[i] - 7.0;
             let place = Place { left, margin: margins[i], top: y, width, height: chart.height, x: x_scale, y: y_scale };
-            draw(&mut canvas, panel, &place);
+            draw(&mut canvas, panel, &place, &series);
+            places.push(place);
             below = below.max(match (&panel.x.ticks, panel.x.label.is_empty()) {
                 (Ticks::None, _) => 2.0,
                 (_, true) => LINE + 1.0,
@@ -66,7 +92,7 @@ pub(crate) fn chart_svg(chart: &Chart) -> Result<String, ReportError> {
         }
         y += chart.height + below;
     }
-    canvas.svg(y + 3.0, &chart.title, &chart.told)
+    (canvas.finished(y + 3.0, &chart.title, &chart.told), places)
 }
 
 fn scales(panel: &Panel, chart: &Chart, width: f64) -> (Scale, Scale) {
@@ -84,34 +110,37 @@ fn left_margin(panel: &Panel, y: &Scale) -> f64 {
 
 /// Every name once, in as many rows as they need.
 fn legend(canvas: &mut Canvas, chart: &Chart, y: f64) -> f64 {
-    let mut seen = BTreeSet::new();
     let (mut x, mut y) = (MARGIN, y + 6.0);
-    for mark in chart.panels.iter().flat_map(|p| &p.marks) {
-        let (Mark::Line { name, points, .. } | Mark::Dots { name, points, .. }) = mark else { continue };
-        if name.is_empty() || points.is_empty() || !seen.insert(name) {
-            continue;
-        }
+    let series = chart.series();
+    for (i, name) in series.iter().enumerate() {
         let wide = KEY + 3.0 + width_of(name, FONT) + 7.0;
         if x + wide > WIDTH && x > MARGIN {
             (x, y) = (MARGIN, y + LINE);
         }
-        match mark {
-            Mark::Line { style, .. } => {
+        canvas.of(Of::Legend(i));
+        let of_name = |mark: &&Mark| {
+            matches!(mark, Mark::Line { name: of, what: "", points, .. } | Mark::Dots { name: of, points, .. }
+                if of == name && !points.is_empty())
+        };
+        let found = chart.panels.iter().flat_map(|p| &p.marks).find(of_name);
+        match found {
+            Some(Mark::Line { style, points, .. }) => {
                 if points.len() > 1 {
                     canvas.line(&path([(x, y), (x + KEY, y)].into_iter()), pen(*style));
                 }
                 marker(canvas, (x + KEY / 2.0, y), *style);
             }
-            Mark::Dots { colour, .. } => canvas.dots(&dot((x + KEY / 2.0, y)), colour, 3.0),
+            Some(Mark::Dots { colour, .. }) => canvas.dots(&dot((x + KEY / 2.0, y)), colour, 3.0),
             _ => {}
         }
         canvas.text((x + KEY + 3.0, y + 2.7), name, Anchor::Start);
         x += wide;
     }
-    if seen.is_empty() { y - 6.0 } else { y + 7.0 }
+    canvas.of(Of::Figure);
+    if series.is_empty() { y - 6.0 } else { y + 7.0 }
 }
 
-fn draw(canvas: &mut Canvas, panel: &Panel, place: &Place) {
+fn draw(canvas: &mut Canvas, panel: &Panel, place: &Place, series: &[&str]) {
     let Place { left, top, width, height, .. } = *place;
     let (right, bottom) = (left + width, top + height);
     for (value, label) in place.y.ticks(&panel.y.ticks) {
@@ -127,8 +156,10 @@ fn draw(canvas: &mut Canvas, panel: &Panel, place: &Place) {
         canvas.text((x.min(WIDTH - 1.0 - half).max(1.0 + half), bottom + LINE), &label, Anchor::Middle);
     }
     for mark in &panel.marks {
+        canvas.of(of_mark(mark, series));
         draw_mark(canvas, mark, place);
     }
+    canvas.of(Of::Figure);
     canvas.line(&rectangle((left, top), (right, bottom)), EDGE);
     let bold = Word { bold: true, ..Word::default() };
     canvas.word((left + width / 2.0, top - 3.0), &panel.title, Anchor::Middle, bold);
@@ -143,6 +174,7 @@ fn draw(canvas: &mut Canvas, panel: &Panel, place: &Place) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::figure::canvas::Form;
     use crate::figure::marks::Side;
     use crate::figure::palette::{HEATING, REST, Style};
 
@@ -151,16 +183,23 @@ mod tests {
         let broken = wave.iter().map(|(x, y)| (*x, if *x > 1.0 { *y } else { f64::NAN })).collect();
         let marks = vec![
             Mark::Band {
+                name: "<a>".to_owned(),
                 style: Style::of_place(0),
                 points: wave.iter().map(|(x, y)| (*x, [y - 20.0, y + 20.0])).collect(),
             },
-            Mark::Line { name: "<a>".to_owned(), style: Style::of_place(0), points: wave.clone() },
-            Mark::Line { name: "b".to_owned(), style: Style::line(HEATING, "3 1.5", 1.0), points: broken },
+            Mark::line("<a>", Style::of_place(0), wave.clone()),
+            Mark::line("b", Style::line(HEATING, "3 1.5", 1.0), broken),
             Mark::Dots { name: "c".to_owned(), colour: REST, points: wave },
             Mark::Limit { at: -250.0, name: "limit".to_owned() },
             Mark::Shade { from: 0.5, to: 9.0 },
             Mark::Frame { low: (0.2, 10.0), high: (0.4, 90.0), name: "box".to_owned() },
-            Mark::Label { at: (1.0, 200.0), name: "label".to_owned(), colour: HEATING, side: Side::Below },
+            Mark::Label {
+                at: (1.0, 200.0),
+                name: "label".to_owned(),
+                of: Vec::new(),
+                colour: HEATING,
+                side: Side::Below,
+            },
         ];
         let panel = |ticks, label: &str, marks| Panel {
             title: "part".to_owned(),
@@ -177,10 +216,14 @@ mod tests {
         }
     }
 
+    fn svg() -> String {
+        drawn(&all_marks()).0.svg(Form::File).unwrap()
+    }
+
     #[test]
     fn prop_charts_are_xml_that_every_renderer_draws_alike() {
-        let svg = chart_svg(&all_marks()).unwrap();
-        assert_eq!(svg, chart_svg(&all_marks()).unwrap());
+        let svg = svg();
+        assert_eq!(svg, self::svg());
         let document = roxmltree::Document::parse(&svg).unwrap();
         let texts: Vec<&str> =
             document.descendants().filter(|n| n.has_tag_name("text")).filter_map(|n| n.text()).collect();
@@ -195,7 +238,7 @@ mod tests {
 
     #[test]
     fn prop_texts_are_large_enough_to_print_and_lie_within_the_figure() {
-        let svg = chart_svg(&all_marks()).unwrap();
+        let svg = svg();
         let document = roxmltree::Document::parse(&svg).unwrap();
         let bounds: Vec<f64> =
             document.root_element().attribute("viewBox").unwrap().split(' ').map(|v| v.parse().unwrap()).collect();

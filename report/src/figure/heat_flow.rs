@@ -3,7 +3,7 @@
 
 use cabin::{HeatFlows, Temperatures, celsius};
 
-use super::canvas::{Anchor, Canvas, INK, Pen, Word, path, rectangle};
+use super::canvas::{Anchor, Canvas, Drawing, Form, INK, Pen, Word, path, rectangle};
 use super::palette::{IN_TIME, STEADY, SUN};
 use crate::ReportError;
 
@@ -74,6 +74,11 @@ struct Flow {
 /// # Errors
 /// [`ReportError::Template`] where template and data do not fit; not for any operation.
 pub fn heat_flow_svg(figure: &HeatFlowFigure) -> Result<String, ReportError> {
+    drawn(figure).svg(Form::File)
+}
+
+/// The diagram.
+pub(crate) fn drawn(figure: &HeatFlowFigure) -> Drawing {
     let (t, f) = (&figure.temperatures, &figure.flows);
     let mut canvas = Canvas::default();
     let top = canvas.heading(&figure.title, &figure.description) + 6.0;
@@ -119,7 +124,42 @@ pub fn heat_flow_svg(figure: &HeatFlowFigure) -> Result<String, ReportError> {
         figure.air_unit_power_w / 1e3 + 0.0
     );
     let y = canvas.remark(top + HEIGHT + 3.0, &power);
-    canvas.svg(y + 5.0, &figure.title, &figure.description)
+    canvas.finished(y + 5.0, &figure.title, &figure.description)
+}
+
+/// What the diagram shows: what it is, how much, and of what unit; flows in the direction that is written.
+pub(crate) fn values(figure: &HeatFlowFigure) -> Vec<(&'static str, f64, &'static str)> {
+    let (t, f) = (&figure.temperatures, &figure.flows);
+    let degrees = [
+        ("radiant heaters", t.radiant_heater_k),
+        ("interior", t.interior_k),
+        ("cabin air", t.cabin_k),
+        ("shell inside", t.shell_inside_k),
+        ("shell outside", t.shell_outside_k),
+        ("ambient", figure.ambient_k),
+    ];
+    let watts = [
+        ("passengers to cabin air", f.passengers_w),
+        ("electronics to cabin air", f.other_w),
+        ("air unit to cabin air", f.air_unit_w),
+        ("cabin air to ambient, doors", f.door_w),
+        ("interior to cabin air", f.convection_interior_w),
+        ("interior to shell inside, radiation", f.radiation_interior_shell_w),
+        ("radiant heaters to cabin air", f.convection_radiant_heater_w),
+        ("radiant heaters to interior, radiation", f.radiation_heater_interior_w),
+        ("radiant heaters to shell inside, radiation", f.radiation_heater_shell_w),
+        ("cabin air to shell inside", f.convection_shell_inside_w),
+        ("shell inside to shell outside", f.conduction_shell_w),
+        ("shell outside to ambient", f.convection_shell_outside_w),
+        ("shell outside to surroundings, radiation", f.radiation_shell_outside_w),
+        ("sun on interior", f.solar.interior_w),
+        ("sun on shell inside", f.solar.shell_inside_w),
+        ("sun on shell outside", f.solar.shell_outside_w),
+        ("electric power of the radiant heaters", f.radiant_heater_power_w),
+        ("electric power of the air unit", figure.air_unit_power_w),
+    ];
+    let degrees = degrees.map(|(what, kelvin)| (what, celsius(kelvin), "°C"));
+    degrees.into_iter().chain(watts.map(|(what, watt)| (what, watt, "W"))).collect()
 }
 
 /// Flows below half a hundredth of a kilowatt are not drawn.
@@ -214,7 +254,7 @@ mod tests {
             let mut canvas = Canvas::default();
             let flow = Flow { watt, from: (0.0, 0.0), to: (100.0, 0.0), carrier: Carrier::Matter, share: 0.5 };
             arrow(&mut canvas, &flow, 14e3, 0.0);
-            canvas.svg(10.0, "", "").unwrap()
+            canvas.finished(10.0, "", "").svg(Form::File).unwrap()
         };
         for watt in [1e3, 7e3, 14e3] {
             let half = coordinate(0.4 + 3.6 * watt / 14e3);

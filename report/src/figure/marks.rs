@@ -5,15 +5,18 @@ use std::fmt::Write as _;
 
 use super::axis::Scale;
 use super::canvas::{Anchor, Canvas, FONT, INK, LINE, PALE_INK, Pen, Word, coordinate, path, rectangle, width_of};
-use super::palette::{LIMIT, Marker, Style};
+use super::palette::{LIMIT, Marker, Style, ink_of};
 
 /// Something on a panel, in the order in which it is drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Mark {
-    /// A line; where a value is not a number, it breaks.
-    Line { name: String, style: Style, points: Vec<(f64, f64)> },
-    /// An area between two values at each place.
-    Band { style: Style, points: Vec<(f64, [f64; 2])> },
+    /// A line; where a value is not a number, it breaks. `what` says what it is where its series has another one on the panel,
+    /// which alone stands in the legend.
+    Line { name: String, what: &'static str, style: Style, points: Vec<(f64, f64)> },
+    /// An area between two values at each place of a series.
+    Band { name: String, style: Style, points: Vec<(f64, [f64; 2])> },
+    /// An area from zero to a line.
+    Area { name: String, style: Style, points: Vec<(f64, f64)> },
     /// A cloud.
     Dots { name: String, colour: &'static str, points: Vec<(f64, f64)> },
     /// A limit: a dotted line across, with its name.
@@ -22,8 +25,26 @@ pub(crate) enum Mark {
     Shade { from: f64, to: f64 },
     /// A dotted box with its name.
     Frame { low: (f64, f64), high: (f64, f64), name: String },
-    /// The name of a line beside it.
-    Label { at: (f64, f64), name: String, colour: &'static str, side: Side },
+    /// A name beside lines, those of the series `of`.
+    Label { at: (f64, f64), name: String, of: Vec<String>, colour: &'static str, side: Side },
+}
+
+impl Mark {
+    /// A line that has its series alone.
+    pub fn line(name: impl Into<String>, style: Style, points: Vec<(f64, f64)>) -> Self {
+        Self::Line { name: name.into(), what: "", style, points }
+    }
+
+    /// The series it belongs to.
+    pub fn series(&self) -> &[String] {
+        match self {
+            Self::Line { name, .. } | Self::Band { name, .. } | Self::Area { name, .. } | Self::Dots { name, .. } => {
+                std::slice::from_ref(name)
+            }
+            Self::Label { of, .. } => of,
+            Self::Limit { .. } | Self::Shade { .. } | Self::Frame { .. } => &[],
+        }
+    }
 }
 
 /// On which side of a falling line its name stands.
@@ -57,6 +78,7 @@ impl Place {
 pub(super) fn extent(mark: &Mark) -> Vec<(f64, f64)> {
     match mark {
         Mark::Line { points, .. } | Mark::Dots { points, .. } => points.clone(),
+        Mark::Area { points, .. } => points.iter().flat_map(|(x, y)| [(*x, 0.0), (*x, *y)]).collect(),
         Mark::Band { points, .. } => points.iter().flat_map(|(x, ends)| ends.map(|end| (*x, end))).collect(),
         Mark::Limit { at, .. } => vec![(f64::NAN, *at)],
         Mark::Shade { from, to } => vec![(*from, f64::NAN), (*to, f64::NAN)],
@@ -76,10 +98,15 @@ pub(super) fn draw_mark(canvas: &mut Canvas, mark: &Mark, place: &Place) {
                 points.iter().for_each(|p| marker(canvas, place.at(*p), *style));
             }
         }
-        Mark::Band { style, points } => {
+        Mark::Band { style, points, .. } => {
             let low = points.iter().map(|(x, [low, _])| place.at((*x, *low)));
             let high = points.iter().rev().map(|(x, [_, high])| place.at((*x, *high)));
             let d = format!("{}Z", path(low.chain(high)));
+            canvas.area(&d, style.colour, 0.22);
+        }
+        Mark::Area { style, points, .. } => {
+            let ground = points.iter().rev().map(|(x, _)| place.at((*x, 0.0)));
+            let d = format!("{}Z", path(points.iter().map(|p| place.at(*p)).chain(ground)));
             canvas.area(&d, style.colour, 0.22);
         }
         Mark::Dots { colour, points, .. } => cloud(canvas, points, colour, place),
@@ -105,9 +132,9 @@ pub(super) fn draw_mark(canvas: &mut Canvas, mark: &Mark, place: &Place) {
             let y = if high.1 - 7.0 - LINE > place.top { high.1 - 7.0 } else { low.1 + 12.0 };
             canvas.word((x, y), name, Anchor::Middle, word);
         }
-        Mark::Label { at, name, colour, side } => {
+        Mark::Label { at, name, colour, side, .. } => {
             let (x, y) = place.at(*at);
-            let word = Word { fill: colour, halo: true, ..Word::default() };
+            let word = Word { fill: ink_of(colour), halo: true, ..Word::default() };
             match side {
                 Side::Above => canvas.word((x + 3.0, y - 2.5), name, Anchor::Start, word),
                 // On the right where the left has no room.

@@ -45,6 +45,18 @@ const MARKERS: [Marker; 7] = [
 /// The designs of the paper, which keep their looks whatever else a study has.
 const KNOWN: [(&str, usize); 5] = [("ptc", 0), ("ptc+rh", 1), ("hp", 2), ("hp+rh", 3), ("hp+curtain", 4)];
 
+/// Words in the colour of a line: as dark as words on white must be (WCAG 2.2, 1.4.3).
+pub(crate) fn ink_of(colour: &'static str) -> &'static str {
+    const DARKER: [(&str, &str); 5] = [
+        ("#d55e00", "#b04d00"),
+        ("#e69f00", "#8a5f00"),
+        ("#56b4e9", "#1f6f9f"),
+        ("#009e73", "#00714f"),
+        ("#cc79a7", "#9c4a78"),
+    ];
+    DARKER.iter().find(|(of, _)| *of == colour).map_or(colour, |(_, ink)| ink)
+}
+
 /// What a point of a line looks like.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Marker {

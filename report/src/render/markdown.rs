@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use super::figures::data_file;
 use crate::document::{Block, Column, Prose, Section, Span, Table};
 
 /// The sections one after the other, blocks parted by blank lines.
@@ -10,6 +11,9 @@ pub(crate) fn markdown(sections: &[Section]) -> String {
     for section in sections {
         if section.level > 0 {
             parts.push(format!("{} {}\n", "#".repeat(section.level), escaped(&section.title)));
+        }
+        if !section.question.is_empty() {
+            parts.push(format!("*{}*\n", prose(&section.question)));
         }
         parts.extend(section.blocks.iter().map(block));
     }
@@ -23,7 +27,16 @@ fn block(block: &Block) -> String {
         Block::Quote(text) => format!("> {}\n", prose(text)),
         Block::List(items) => items.iter().map(|item| format!("- {}\n", prose(item))).collect(),
         Block::Table(rows) => table(rows),
-        Block::Figure { file, caption } => format!("![{caption}]({file})\n"),
+        Block::Figure(figure) => {
+            let (file, data) = (figure.file, data_file(figure));
+            format!("![{}]({file}.svg)\n\nThe values in it: [{data}]({data})\n", escaped(&figure.caption))
+        }
+        Block::Means(text) => format!("**What it means.** {}\n", prose(text)),
+        Block::Limits(text) => format!("**Its limits.** {}\n", prose(text)),
+        Block::Choice(choice) => match choice.options.get(choice.shown) {
+            Some((_, blocks)) => blocks.iter().map(self::block).collect::<Vec<_>>().join("\n"),
+            None => String::new(),
+        },
     }
 }
 
@@ -46,7 +59,7 @@ fn table(table: &Table) -> String {
             let _ = write!(text, " {} |", escaped(cell));
         }
     }
-    text + "\n"
+    format!("{text}\n\nEvery digit: [{0}]({0})\n", table.file)
 }
 
 fn prose(spans: &Prose) -> String {

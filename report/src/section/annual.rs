@@ -1,8 +1,9 @@
 //! Annual mean power by design and window.
 
+use cabin::ComfortWindow;
 use store::AnnualRow;
 
-use super::weights_note;
+use super::{pareto, weights_note};
 use crate::StudyReport;
 use crate::document::{Block, DataTable, Section, Span, Table};
 use crate::numbers::{optional, text, watts, window, within};
@@ -18,10 +19,45 @@ pub(super) fn section(study: &StudyReport) -> Section {
         [window(w)].into_iter().chain(cells).collect()
     };
     let rows = study.windows().into_iter().map(row).collect();
-    Section { tables: vec![data(study)], ..Section::new("Annual mean HVAC power in W") }
-        .with(Block::Table(Table::new(&["PMV"], &designs, rows)))
+    let section = Section { tables: vec![data(study)], ..Section::new("Annual mean HVAC power") }
+        .asking("How much power does each design need for how much comfort, in the mean over the hours in service?");
+    pareto::with_fronts(section, study)
+        .with(Block::words("In W:"))
+        .with(Block::Table(Table::new("annual_average.csv", &["PMV"], &designs, rows)))
         .with(study.has_intervals().then(interval_note))
         .with(weights_note(study))
+        .with(meaning(study))
+        .with(Block::limits(
+            "These are optima of single hours: no control reaches all of them, and what a cabin takes to warm up is not in them. Sections\n\
+             below say how much that is. The means are over the hours in service, months weighted by their days; hours out of service have\n\
+             no power here.",
+        ))
+}
+
+/// Which design is the cheapest in which windows.
+fn meaning(study: &StudyReport) -> Option<Block> {
+    let mut runs: Vec<(&str, ComfortWindow, ComfortWindow)> = Vec::new();
+    for w in study.windows() {
+        let Some((name, _)) = study.cheapest(w) else { continue };
+        match runs.last_mut() {
+            Some((last, _, to)) if *last == name => *to = w,
+            _ => runs.push((name, w, w)),
+        }
+    }
+    let text = match runs.as_slice() {
+        [] => return None,
+        [(name, ..)] => format!("In every comfort window {name} needs the least."),
+        several => {
+            let each = several.iter().map(|(name, from, to)| match from == to {
+                true => format!("{name} at PMV {}", window(*from)),
+                false => format!("{name} from PMV {} to {}", window(*from), window(*to)),
+            });
+            format!("The cheapest design depends on the comfort window: {}.", each.collect::<Vec<_>>().join(", "))
+        }
+    };
+    let words = " The farther the vote may be from neutral, the less power any design needs: what is lower on the same place of the\n\
+                 figure is cheaper for the same comfort.";
+    Some(Block::Means(vec![Span::Value(text), Span::Text(words)]))
 }
 
 /// What stands in brackets.

@@ -4,30 +4,31 @@ use cabin::ComfortWindow;
 use store::{ControlPoint, ControlYear, Outside};
 
 use super::control_front::{Coordinate, Front, Verdict, controllers_chart, verdicts};
-use super::weights_note;
+use super::{value, weights_note};
+use crate::StudyReport;
 use crate::document::{Block, DataTable, Section, Span, Table};
-use crate::figure::{Chart, chart_svg};
-use crate::numbers::{of_point, optional, percent, signed_percent_within, text, watts, window, within};
-use crate::{ReportError, StudyReport};
+use crate::figure::Chart;
+use crate::numbers::{of_point, optional, percent, signed_percent, signed_percent_within, text, watts, window, within};
 
 /// The last of the designs that are driven stands for them; all are in the tables of data.
-pub(super) fn section(study: &StudyReport) -> Result<Option<Section>, ReportError> {
+pub(super) fn section(study: &StudyReport) -> Option<Section> {
     let mut tables = Vec::new();
     if !study.control_failures.is_empty() {
         tables.push(failures(study));
     }
     if study.control_years.is_empty() && tables.is_empty() {
-        return Ok(None);
+        return None;
     }
     tables.extend([annual(study), outside(study)]);
     let Some(design) = study.control_years.last().map(|y| y.point.design.clone()) else {
         let text = "No mission could be driven by a controller; control_failures.csv says why.";
-        return Ok(Some(Section { tables, ..Section::new("Causal controllers") }.with(Block::words(text))));
+        return Some(Section { tables, ..Section::new("Causal controllers") }.with(Block::words(text)));
     };
     let years: Vec<&ControlYear> = study.control_years.iter().filter(|y| y.point.design == design).collect();
-    let Some(shown) = shown(&years) else { return Ok(None) };
+    let shown = shown(&years)?;
     let title = format!("Causal controllers over the year: {design}");
     let mut section = Section { tables, ..Section::new(title) }
+        .asking("What does a year take with a control that sees the present alone, and how do published setpoints compare?")
         .with(Block::words(
             "Every mission once more, second by second, by a controller that sees the present alone: the paper's state machine and PI controller follow the\n\
              extracted profiles of a window, or setpoints that others have published, with the same air curtains and heaters. Passengers judge by the vote of\n\
@@ -46,10 +47,10 @@ pub(super) fn section(study: &StudyReport) -> Result<Option<Section>, ReportErro
             .with(Block::Table(published(&verdicts)));
     }
     for (file, caption, chart) in [
-        ("control_pareto.svg", "Annual power over the mean vote", votes(&years)),
-        ("control_outside.svg", "Annual power over the passenger-hours outside", hours_outside(study, &design, shown)),
+        ("control_pareto", "Annual power over the mean vote", votes(&years)),
+        ("control_outside", "Annual power over the passenger-hours outside", hours_outside(study, &design, shown)),
     ] {
-        section = section.with_figure(file, caption, chart_svg(&chart)?);
+        section = section.with_chart(file, caption, chart);
     }
     if let Some(table) = trained(&years) {
         section = section
@@ -58,7 +59,25 @@ pub(super) fn section(study: &StudyReport) -> Result<Option<Section>, ReportErro
             ))
             .with(Block::Table(table));
     }
-    Ok(Some(section.with(weights_note(study))))
+    Some(section.with(weights_note(study)).with(meaning(&years, shown, &verdicts)).with(Block::limits(
+        "Sensors are exact and the bus is the one of the model. Votes are means over the passengers: single ones may differ.",
+    )))
+}
+
+/// What the extracted profiles take more than the optima, and how many published setpoints they beat.
+fn meaning(years: &[&ControlYear], shown: ComfortWindow, verdicts: &[Verdict]) -> Option<Block> {
+    let point = of(years, "extracted").into_iter().find(|y| y.point.window == shown).map(|y| &y.point)?;
+    let gap = signed_percent(point.mean_hvac_power_w - point.static_mean_hvac_power_w, point.static_mean_hvac_power_w);
+    let beaten = |by: fn(&&Verdict) -> bool| verdicts.iter().filter(by).count();
+    let both = beaten(|v| v.mean_vote.is_beaten() && v.outside.is_beaten());
+    let mut text = format!("Not knowing the hour costs {gap} of power at PMV {}.", window(shown));
+    if !verdicts.is_empty() {
+        text += &format!(
+            " At the same power the extracted profiles leave less discomfort by both measures than {both} of {} published setpoints.",
+            verdicts.len()
+        );
+    }
+    Some(Block::Means(value(text)))
 }
 
 /// The window that is driven and is nearest to ±1.
@@ -103,7 +122,7 @@ fn extracted(study: &StudyReport, years: &[&ControlYear]) -> Table {
         "passenger-hours outside",
         "missions",
     ];
-    Table::new(&["profiles of PMV"], &columns, of(years, "extracted").iter().map(row).collect())
+    Table::new("control_annual.csv", &["profiles of PMV"], &columns, of(years, "extracted").iter().map(row).collect())
 }
 
 fn published(verdicts: &[Verdict]) -> Table {
@@ -127,7 +146,12 @@ fn published(verdicts: &[Verdict]) -> Table {
         ]
     };
     let columns = ["W", "mean PMV", "extracted", "hours outside", "extracted"];
-    Table::new(&["setpoints", "extracted ones are better"], &columns, verdicts.iter().map(row).collect())
+    Table::new(
+        "control_outside.csv",
+        &["setpoints", "extracted ones are better"],
+        &columns,
+        verdicts.iter().map(row).collect(),
+    )
 }
 
 /// `None` where there is one year alone.
@@ -157,7 +181,12 @@ fn trained(years: &[&ControlYear]) -> Option<Table> {
         "mean PMV",
         "outside",
     ];
-    Some(Table::new(&["profiles of PMV"], &columns, of(years, TRAININGS[0]).iter().map(row).collect()))
+    Some(Table::new(
+        "control_annual.csv",
+        &["profiles of PMV"],
+        &columns,
+        of(years, TRAININGS[0]).iter().map(row).collect(),
+    ))
 }
 
 /// Lines of steady state and of the extracted profiles, and a point of every other controller.

@@ -27,7 +27,8 @@ pub(super) fn section(study: &StudyReport) -> Option<Section> {
     ];
     let title = format!("Extracted profiles of PMV {}, by class of mission", window(shown));
     let extracted = of("extracted");
-    let table = Table::new(&["", ""], &columns, extracted.iter().map(|c| row(c)).collect());
+    let table =
+        Table::new("control_classes.csv", &["by", "class"], &columns, extracted.iter().map(|c| row(c)).collect());
     let section = Section { level: 3, tables: vec![data(study)], ..Section::new(title) }
         .with(Block::words("All designs, windows and controllers are in control_classes.csv."))
         .with(Block::Table(table));
@@ -59,7 +60,7 @@ pub(super) fn section(study: &StudyReport) -> Option<Section> {
                 "Setpoints that extracted ones do not beat in both measures, by ambient temperature: mean power and mean PMV. A window asks for the same distance\n\
                  from neutral at all temperatures; who asks for more where it is cheap and for less where it is dear can have a lower mean at the same power.",
             ))
-            .with(Block::Table(Table::new(&["ambient temperature in °C"], &titles, rows.collect()))),
+            .with(Block::Table(Table::new("control_classes.csv", &["ambient temperature in °C"], &titles, rows.collect()))),
     )
 }
 

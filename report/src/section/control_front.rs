@@ -37,8 +37,7 @@ pub(super) fn controllers_chart(title: &str, told: &str, [x, y]: [&str; 2], fron
             Style::of_place(next - 1)
         }
     };
-    let mut line =
-        |front: &Front| Mark::Line { name: front.name.clone(), style: style(front), points: front.points.clone() };
+    let mut line = |front: &Front| Mark::line(&front.name, style(front), front.points.clone());
     // A single point has its name beside it, on the left where another one lies in its way, and beneath all points.
     let all = || fronts.iter().flat_map(|front| &front.points).copied();
     let (wide, high) = all().fold((0.0, 0.0), |(w, h), (x, y)| (f64::max(w, x), f64::max(h, y)));
@@ -51,7 +50,8 @@ pub(super) fn controllers_chart(title: &str, told: &str, [x, y]: [&str; 2], fron
     let name = |front: &Front| match front.points.as_slice() {
         [at] => {
             let side = if in_way(*at) { Side::Below } else { Side::Above };
-            Some(Mark::Label { at: *at, name: front.name.clone(), colour: LIMIT, side })
+            let name = front.name.clone();
+            Some(Mark::Label { at: *at, of: vec![name.clone()], name, colour: LIMIT, side })
         }
         _ => None,
     };

@@ -3,24 +3,24 @@
 use store::{ControlMinute, ControlTrace};
 
 use super::mission_hour::{clock_h, clock_label};
+use crate::StudyReport;
 use crate::document::Section;
 use crate::figure::palette::{LIMIT, Style};
-use crate::figure::{Axis, Chart, Mark, Panel, Ticks, chart_svg};
+use crate::figure::{Axis, Chart, Mark, Panel, Ticks};
 use crate::numbers::window;
-use crate::{ReportError, StudyReport};
 
 use super::control_front::{Front, controllers_chart};
 
 /// A part of the section before it, without a title of its own.
-pub(super) fn section(study: &StudyReport) -> Result<Option<Section>, ReportError> {
+pub(super) fn section(study: &StudyReport) -> Option<Section> {
     if study.control_traces.is_empty() {
-        return Ok(None);
+        return None;
     }
     let mut section = Section { level: 0, ..Section::default() };
-    let (file, caption) = ("causal_time_resolved.svg", "A hot mission under causal controllers");
-    section = section.with_figure(file, caption, chart_svg(&in_time(study))?);
-    let (file, caption) = ("causal_pareto_front.svg", "The same mission under all controllers");
-    Ok(Some(section.with_figure(file, caption, chart_svg(&pareto(study))?)))
+    let (file, caption) = ("causal_time_resolved", "A hot mission under causal controllers");
+    section = section.with_chart(file, caption, in_time(study));
+    let (file, caption) = ("causal_pareto_front", "The same mission under all controllers");
+    Some(section.with_chart(file, caption, pareto(study)))
 }
 
 fn name(trace: &ControlTrace) -> String {
@@ -37,10 +37,8 @@ fn in_time(study: &StudyReport) -> Chart {
     let hour = |minute: usize| first_h + (minute as f64 + 0.5) / 60.0;
     let longest = traces.iter().map(|t| t.minutes.len()).max().unwrap_or(0);
     let end_h = first_h + longest as f64 / 60.0;
-    let line = |name: String, style: Style, trace: &ControlTrace, value: &dyn Fn(&ControlMinute) -> f64| Mark::Line {
-        name,
-        style,
-        points: trace.minutes.iter().enumerate().map(|(i, m)| (hour(i), value(m))).collect(),
+    let line = |name: String, style: Style, trace: &ControlTrace, value: &dyn Fn(&ControlMinute) -> f64| {
+        Mark::line(name, style, trace.minutes.iter().enumerate().map(|(i, m)| (hour(i), value(m))).collect())
     };
     let styled = || traces.iter().enumerate().map(|(i, trace)| (Style::of_place(2 * i).without_marker(), trace));
     let lines = |value: fn(&ControlMinute) -> f64| -> Vec<Mark> {
@@ -51,7 +49,9 @@ fn in_time(study: &StudyReport) -> Chart {
     // At rest there is no setpoint: the line breaks.
     let setpoints = styled().map(|(style, trace)| {
         let style = Style { dash: "0.8 1.4", width: 0.7, ..style };
-        line(String::new(), style, trace, &|m| m.setpoint_c.unwrap_or(f64::NAN))
+        let value = |m: &ControlMinute| m.setpoint_c.unwrap_or(f64::NAN);
+        let points = trace.minutes.iter().enumerate().map(|(i, m)| (hour(i), value(m))).collect();
+        Mark::Line { name: name(trace), what: "setpoint", style, points }
     });
     let mut cabin = lines(|m| m.cabin_temperature_c);
     cabin.extend(setpoints);

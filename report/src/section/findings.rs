@@ -1,6 +1,6 @@
 //! What the paper finds, beside what this study finds.
 
-use super::weights_note;
+use super::{value, weights_note};
 use crate::StudyReport;
 use crate::document::{Block, DataTable, Section, Span, Table};
 use crate::numbers::signed;
@@ -45,6 +45,7 @@ pub(super) fn section(study: &StudyReport) -> Section {
     let findings = paper_findings(study);
     let row =
         |f: &PaperFinding| vec![f.claim.to_owned(), f.paper.to_owned(), f.ours.clone(), f.verdict.word().to_owned()];
+    let count = |verdict| findings.iter().filter(|f| f.verdict == verdict).count();
     let rows = findings.iter().map(row).collect();
     let data = DataTable::of(
         "paper_comparison.csv",
@@ -57,13 +58,25 @@ pub(super) fn section(study: &StudyReport) -> Section {
         ],
     );
     Section { tables: vec![data], ..Section::new("The paper's findings beside this study") }
+        .asking("Does this study find what the paper found whose method it follows?")
         .with(Block::Paragraph(vec![Span::Text(
             "Widmer, van Dooren, Onder, Control Engineering Practice 2025, 106158; 7399 hourly samples of one bus in Zürich, 2019–2022.\n\
              A range is within where both its ends are, as whole percents like those that the paper prints; \"almost 50 %\" is taken as 45 … 50 %.\n\
              A study without every month of the year covers none of them.",
         )]))
-        .with(Block::Table(Table::new(&["finding", "paper", "this study", ""], &[], rows)))
+        .with(Block::Table(Table::new("paper_comparison.csv", &["finding", "paper", "this study", "verdict"], &[], rows)))
         .with(weights_note(study))
+        .with(Block::Means(value(format!(
+            "{} of {} findings hold here, {} lie outside their range, {} are not covered by this study.",
+            count(Verdict::Within),
+            findings.len(),
+            count(Verdict::Outside),
+            count(Verdict::NotCovered)
+        ))))
+        .with(Block::limits(
+            "The paper's telemetry, coefficients of performance and shade are not public: what lies outside is not by itself an error of\n\
+             either.",
+        ))
 }
 
 /// The findings of the paper's section "Case Study 1". Percentages are compared as whole ones, as the paper prints them; "almost

@@ -22,9 +22,10 @@ pub(super) fn section(study: &StudyReport) -> Section {
         ]
     };
     let rows = [FileKind::Mission, FileKind::Weather, FileKind::Shadow].map(row).to_vec();
-    let mut table = Table::new(&["kind"], &["used", "refused", "rows", "bytes"], rows);
+    let mut table = Table::new("sources.csv", &["kind"], &["used", "refused", "rows", "bytes"], rows);
     table.columns.extend(["first", "last"].map(|c| Column::Words(c.to_owned())));
     let section = Section { tables: vec![data(study)], ..Section::new("Inputs") }
+        .asking("What was read?")
         .with(Block::words("Every file with its hash is in sources.csv."))
         .with(Block::Table(table));
     let missing: Vec<&str> = study.files.iter().filter(|f| f.is_missing()).map(|f| f.path.as_str()).collect();

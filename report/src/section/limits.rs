@@ -1,13 +1,36 @@
-//! In how many samples a limit of comfort binds.
+//! In how much of the time a limit of comfort binds.
 
-use super::weights_note;
+use cabin::ComfortWindow;
+use store::LimitShare;
+
+use super::{by_window, value, weights_note};
 use crate::StudyReport;
-use crate::document::{Block, Section, Table};
-use crate::numbers::{percent, window};
+use crate::document::{Block, DataTable, Section, Table};
+use crate::figure::palette::of_designs;
+use crate::figure::{Axis, Chart, Mark, Panel};
+use crate::numbers::{percent, text, window};
 
 pub(super) fn section(study: &StudyReport) -> Option<Section> {
-    let shown = study.shown_window()?;
-    let rows = study.limit_shares.iter().filter(|s| s.window == shown && s.solved_count > 0).map(|s| {
+    if study.limit_shares.iter().all(|s| s.solved_count == 0) {
+        return None;
+    }
+    let section = Section { tables: vec![data(study)], ..Section::new("Limits of comfort") }
+        .asking("How much of the time are passengers only just as comfortable as was asked for?")
+        .with(chart(study).map(|chart| Block::chart("limit_share", "Time at the lower limit of comfort", chart)))
+        .with(Block::words(
+            "Shares of the solved samples; the weighted ones count every month by its days. The last column is the share of states\n\
+             outside the range of use of ISO 7730, where the PMV is an extrapolation.",
+        ))
+        .with(by_window(study, |w| {
+            [Block::Table(table(study, w))].into_iter().chain(meaning(study, w)).collect::<Vec<_>>()
+        })?);
+    Some(section.with(weights_note(study)).with(Block::limits(
+        "A limit binds where the optimum lies on it: more comfort would cost power there. Whether a limit binds says nothing on how much.",
+    )))
+}
+
+fn table(study: &StudyReport, w: ComfortWindow) -> Table {
+    let rows = study.limit_shares.iter().filter(|s| s.window == w && s.solved_count > 0).map(|s| {
         let share = |n: u64| percent(Some(n as f64 / s.solved_count as f64));
         vec![
             s.design.clone(),
@@ -29,13 +52,62 @@ pub(super) fn section(study: &StudyReport) -> Option<Section> {
         "weighted",
         "outside ISO 7730",
     ];
-    Some(
-        Section::new(format!("Limits of comfort at PMV {}", window(shown)))
-            .with(Block::words(
-                "Shares of the solved samples; the weighted ones count every month by its days. The last column is the share of states\n\
-                 outside the range of use of ISO 7730, where the PMV is an extrapolation.",
-            ))
-            .with(Block::Table(Table::new(&["design"], &columns, rows.collect())))
-            .with(weights_note(study)),
+    Table::new("limit_share.csv", &["design"], &columns, rows.collect())
+}
+
+fn meaning(study: &StudyReport, w: ComfortWindow) -> Option<Block> {
+    let (design, _) = study.cheapest(w)?;
+    let s = study.limit_shares.iter().find(|s| s.design == design && s.window == w && s.solved_count > 0)?;
+    let idle = 1.0 - (s.heating_count + s.cooling_count) as f64 / s.solved_count as f64;
+    Some(Block::Means(value(format!(
+        "With {design} at PMV {}, in {} of the hours the air unit neither heats nor cools: sun, passengers and electronics keep the bus \
+         comfortable.",
+        window(w),
+        percent(Some(idle))
+    ))))
+}
+
+fn chart(study: &StudyReport) -> Option<Chart> {
+    let names = study.design_names();
+    let line = |(name, style)| {
+        let rows =
+            study.limit_shares.iter().filter(|s| s.design == name && s.window.is_symmetric() && s.solved_count > 0);
+        let mut points: Vec<(f64, f64)> = rows.map(|s| (s.window.pmv_limit(), 100.0 * s.lower_weight)).collect();
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        Mark::line(name, style, points)
+    };
+    let marks: Vec<Mark> = names.iter().copied().zip(of_designs(&names)).map(line).collect();
+    marks.iter().any(|m| matches!(m, Mark::Line { points, .. } if points.len() > 1)).then(|| Chart {
+        title: "Time at the lower limit of comfort".to_owned(),
+        told: "Share of the samples whose optimum lies at the lower limit of its comfort window, months weighted by their days."
+            .to_owned(),
+        columns: 1,
+        panels: vec![Panel {
+            x: Axis::new("limit of |PMV|").from(0.0),
+            y: Axis::new("time at the lower limit in %").from(0.0),
+            marks,
+            ..Panel::default()
+        }],
+        height: 110.0,
+    })
+}
+
+fn data(study: &StudyReport) -> DataTable {
+    DataTable::of(
+        "limit_share.csv",
+        &study.limit_shares,
+        &[
+            ("design", &|s: &LimitShare| text(&s.design)),
+            ("pmv_min", &|s| s.window.pmv_min().to_string()),
+            ("pmv_max", &|s| s.window.pmv_max().to_string()),
+            ("solved_count", &|s| s.solved_count.to_string()),
+            ("lower_count", &|s| s.lower_count.to_string()),
+            ("upper_count", &|s| s.upper_count.to_string()),
+            ("heating_count", &|s| s.heating_count.to_string()),
+            ("cooling_count", &|s| s.cooling_count.to_string()),
+            ("lower_weight", &|s| s.lower_weight.to_string()),
+            ("cooling_weight", &|s| s.cooling_weight.to_string()),
+            ("outside_range_count", &|s| s.outside_range_count.to_string()),
+        ],
     )
 }

@@ -25,11 +25,7 @@ pub(super) fn mission(trace: &MissionTrace, note: Option<&str>, zone: Tz) -> Cha
         let of = |i: usize| [0.0, 1.0].map(|end| (first_h + segment_h * (i as f64 + end), value(i)));
         (0..segments.len()).flat_map(of).collect()
     };
-    let line = |name: &str, colour, dash, width, points| Mark::Line {
-        name: name.to_owned(),
-        style: Style::line(colour, dash, width),
-        points,
-    };
+    let line = |name: &str, colour, dash, width, points| Mark::line(name, Style::line(colour, dash, width), points);
     let in_time = |width, points| line("in time", IN_TIME, "", width, points);
     let steady = |points| line("hourly mean, steady state", STEADY, DASHED, 1.0, points);
     let panel = |label: &str, marks| Panel {
@@ -124,11 +120,9 @@ pub(super) fn data_sample(trace: &MissionTrace, zone: Tz) -> Option<Chart> {
     let from = clock_h(first.start, zone) + hour_h * shown as f64;
     let within = |(x, _): &(f64, f64)| (from - 1e-9..=from + hour_h + 1e-9).contains(x);
     let zoomed = |mark: &Mark| match mark {
-        Mark::Line { name, style, points } => Some(Mark::Line {
-            name: name.clone(),
-            style: *style,
-            points: points.iter().copied().filter(within).collect(),
-        }),
+        Mark::Line { name, style, points, .. } => {
+            Some(Mark::line(name, *style, points.iter().copied().filter(within).collect()))
+        }
         _ => None,
     };
     let disturbances = &day.panels[..4.min(day.panels.len())];

@@ -35,7 +35,7 @@ pub(super) fn fronts(all: &[TraceWindow]) -> Chart {
         let line = |name: &str, dash, marker, mut points: Vec<(f64, f64)>| {
             points.sort_by(|a, b| a.0.total_cmp(&b.0));
             let style = Style { colour, dash, width: 1.0, marker: Some(marker) };
-            Mark::Line { name: format!("{label}, {name}"), style, points }
+            Mark::line(format!("{label}, {name}"), style, points)
         };
         marks.push(line("steady state", DASHED, markers[0], rows().map(steady).collect()));
         marks.push(line("simulated", "", markers[1], rows().filter_map(driven).collect()));

@@ -6,9 +6,9 @@ use chrono_tz::Tz;
 use ingest::sample::Sample;
 use store::MissionTrace;
 
-use crate::figure::{HeatFlowFigure, heat_flow_svg};
+use crate::StudyReport;
+use crate::figure::HeatFlowFigure;
 use crate::numbers::{signed, window};
-use crate::{ReportError, StudyReport};
 
 /// Hours since the local midnight before.
 pub(super) fn clock_h(start: DateTime<Utc>, zone: Tz) -> f64 {
@@ -50,12 +50,12 @@ pub(super) fn shown_operation<'t>(
 }
 
 /// The diagram of that segment.
-pub(super) fn heat_flows(trace: &MissionTrace, study: &StudyReport) -> Result<Option<String>, ReportError> {
-    let Some((sample, o, flows)) = shown_operation(trace, study) else { return Ok(None) };
+pub(super) fn heat_flows(trace: &MissionTrace, study: &StudyReport) -> Option<HeatFlowFigure> {
+    let (sample, o, flows) = shown_operation(trace, study)?;
     let d = &sample.disturbances;
     let start = sample.segment.start.with_timezone(&study.zone);
     let end = start + TimeDelta::seconds(sample.segment.duration_s.into());
-    let figure = HeatFlowFigure {
+    Some(HeatFlowFigure {
         title: format!("Heat flows of an hour, {} at PMV {}", trace.design, window(trace.window)),
         description: format!(
             "{} to {}; {:.1} passengers, {:.1} % of the doors open, shadow fraction {:.2}, PMV {}.",
@@ -70,6 +70,5 @@ pub(super) fn heat_flows(trace: &MissionTrace, study: &StudyReport) -> Result<Op
         temperatures: o.temperatures,
         flows,
         air_unit_power_w: o.air_unit_power_w,
-    };
-    heat_flow_svg(&figure).map(Some)
+    })
 }

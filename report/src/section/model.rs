@@ -5,11 +5,11 @@ use cabin::{Cop, PmvModel, Vehicle, clothing_insulation_clo, kelvin, named_cooli
 use solve::nlp::Surrogate;
 use store::DesignRow;
 
-use crate::document::Section;
+use crate::StudyReport;
+use crate::document::{Block, Section};
 use crate::figure::palette::{COOLING, DASHED, DOTTED, FROM_COLD_TO_WARM, HEATING, LIMIT, Marker, Style};
-use crate::figure::{Axis, Chart, Mark, Panel, Side, chart_svg};
+use crate::figure::{Axis, Chart, Mark, Panel, Side};
 use crate::numbers::signed;
-use crate::{ReportError, StudyReport};
 
 /// Lifts that are shown, in K.
 const LIFTS_K: [f64; 2] = [0.0, 40.0];
@@ -18,22 +18,30 @@ const APPROXIMATION_AT_C: f64 = 10.0;
 /// The constant under the paper's smooth root, in K² (eq. sqrt-of-abs-approx).
 const SMOOTH_K2: f64 = 0.01;
 
-pub(super) fn section(study: &StudyReport) -> Result<Option<Section>, ReportError> {
+pub(super) fn section(study: &StudyReport) -> Option<Section> {
     if study.designs.is_empty() {
-        return Ok(None);
+        return None;
     }
-    let mut section = Section::new("What the model is made of");
+    let mut section = Section::new("What the model is made of")
+        .asking("Which curves of equipment, clothing and comfort do all numbers rest on?");
     for (file, caption, chart) in [
-        ("model_parameters.svg", "Coefficients of performance, clothing and vote", parameters(study)),
-        ("model_approximations.svg", "The paper's approximations", approximations(&study.vehicle)),
+        ("model_parameters", "Coefficients of performance, clothing and vote", parameters(study)),
+        ("model_approximations", "The paper's approximations", approximations(&study.vehicle)),
     ] {
-        section = section.with_figure(file, caption, chart_svg(&chart)?);
+        section = section.with_chart(file, caption, chart);
     }
-    Ok(Some(section))
+    Some(
+        section
+            .with(Block::means(
+                "A heat pump gives the more heat for its power the smaller the lift is from outside to inside: mild hours are cheap, cold ones\n\
+                 doubly dear. Clothing lets the neutral temperature fall in winter.",
+            ))
+            .with(Block::limits("Curves that are substitutes for unpublished ones are named under Assumptions.")),
+    )
 }
 
 fn line(name: impl Into<String>, style: Style, points: impl Iterator<Item = (f64, f64)>) -> Mark {
-    Mark::Line { name: name.into(), style, points: points.collect() }
+    Mark::line(name, style, points.collect())
 }
 
 fn between([from, to]: [f64; 2], count: u32) -> impl Iterator<Item = f64> + Clone {
@@ -145,10 +153,17 @@ fn votes(vehicle: &Vehicle) -> Vec<Mark> {
             // Each temperature has its labels where the others have none.
             let place = points.len() * (i + 1) / 4;
             let Some(&at) = points.get(place) else { continue };
-            let name =
-                if vote == -1.0 { format!("PMV at {} °C ambient", signed(ambient_c, 0)) } else { String::new() };
-            marks.push(Mark::Line { name, style, points });
-            marks.push(Mark::Label { at, name: signed(vote, 0), colour: style.colour, side: Side::Above });
+            let series = format!("PMV at {} °C ambient", signed(ambient_c, 0));
+            let what = if vote < 0.0 {
+                ""
+            } else if vote > 0.0 {
+                "+1"
+            } else {
+                "0"
+            };
+            marks.push(Mark::Line { name: series.clone(), what, style, points });
+            let (name, of) = (signed(vote, 0), vec![series]);
+            marks.push(Mark::Label { at, name, of, colour: style.colour, side: Side::Above });
         }
     }
     marks

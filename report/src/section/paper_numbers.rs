@@ -79,7 +79,12 @@ pub(super) fn section(study: &StudyReport) -> Option<Section> {
     let cells = |n: &PaperNumber| {
         vec![n.figure.to_owned(), n.number.clone(), n.paper.clone(), n.ours.clone(), n.verdict.word().to_owned()]
     };
-    let table = Table::new(&["figure", "number", "paper", "this study", ""], &[], all.iter().map(cells).collect());
+    let table = Table::new(
+        "paper_numbers.csv",
+        &["figure", "number", "paper", "this study", "verdict"],
+        &[],
+        all.iter().map(cells).collect(),
+    );
     let data = DataTable::of(
         "paper_numbers.csv",
         &all,
@@ -96,8 +101,17 @@ pub(super) fn section(study: &StudyReport) -> Option<Section> {
                  inputs: with synthetic telemetry they are not those of the paper.";
     Some(
         Section { tables: vec![data], ..Section::new("Numbers that the paper prints") }
+            .asking("Are the temperatures, flows and times found again that the paper prints of its two missions?")
             .with(Block::words(words))
-            .with(Block::Table(table)),
+            .with(Block::Table(table))
+            .with(Block::Means(super::value(format!(
+                "{} of {} numbers are found again.",
+                all.iter().filter(|n| n.verdict == Verdict::Within).count(),
+                all.len()
+            ))))
+            .with(Block::limits(
+                "Weather and mission are named like the paper's; whether they are the same, a name cannot say.",
+            )),
     )
 }
 

@@ -12,7 +12,8 @@ const LISTED: usize = 40;
 pub(super) fn section(study: &StudyReport) -> Section {
     let all: Vec<(&FileRecord, &Finding)> =
         study.files.iter().flat_map(|f| f.findings.iter().map(move |finding| (f, finding))).collect();
-    let mut section = Section { tables: vec![data(&all)], ..Section::new("Data quality") };
+    let mut section = Section { tables: vec![data(&all), excluded(study)], ..Section::new("Data quality") }
+        .asking("What was noticed in the inputs, and which parts of missions gave no sample?");
     if all.is_empty() {
         section = section.with(Block::words("Nothing was noticed in the input files."));
     } else {
@@ -25,7 +26,7 @@ pub(super) fn section(study: &StudyReport) -> Section {
         return section.with(Block::words("Every segment gave a sample."));
     }
     let rows = study.exclusions.iter().map(|e| vec![e.reason.clone(), e.count.to_string()]);
-    section.with(Block::Table(Table::new(&["segments without a sample"], &["count"], rows.collect())))
+    section.with(Block::Table(Table::new("excluded.csv", &["segments without a sample"], &["count"], rows.collect())))
 }
 
 fn findings(all: &[(&FileRecord, &Finding)]) -> Table {
@@ -35,7 +36,7 @@ fn findings(all: &[(&FileRecord, &Finding)]) -> Table {
         let place = format!("{}{line}{column}", file.path);
         vec![place, finding.kind.name().to_owned(), finding.count.to_string(), finding.message.clone()]
     });
-    let mut table = Table::new(&["file", "finding"], &["count"], rows.collect());
+    let mut table = Table::new("data_quality.csv", &["file", "finding"], &["count"], rows.collect());
     table.columns.push(Column::Words("what it is".to_owned()));
     table
 }
@@ -53,5 +54,13 @@ fn data(all: &[(&FileRecord, &Finding)]) -> DataTable {
             ("column", &|(_, q)| text(q.column.as_deref().unwrap_or_default())),
             ("message", &|(_, q)| text(&q.message)),
         ],
+    )
+}
+
+fn excluded(study: &StudyReport) -> DataTable {
+    DataTable::of(
+        "excluded.csv",
+        &study.exclusions,
+        &[("reason", &|e| text(&e.reason)), ("segment_count", &|e| e.count.to_string())],
     )
 }

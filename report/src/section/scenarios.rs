@@ -7,27 +7,37 @@ use shading::hour_of_year;
 use store::{DisturbanceBin, VoteBin};
 
 use super::setpoints::nearest_windows;
-use crate::document::Section;
+use crate::StudyReport;
+use crate::document::{Block, Section};
 use crate::figure::palette::{FROM_COLD_TO_WARM, IN_TIME, Marker, SUN, Style};
-use crate::figure::{Axis, Chart, Mark, Panel, Ticks, chart_svg};
+use crate::figure::{Axis, Chart, Mark, Panel, Ticks};
 use crate::numbers::window;
-use crate::{ReportError, StudyReport};
 
-pub(super) fn section(study: &StudyReport) -> Result<Option<Section>, ReportError> {
+pub(super) fn section(study: &StudyReport) -> Option<Section> {
     if study.disturbance_bins.is_empty() {
-        return Ok(None);
+        return None;
     }
-    let mut section = Section::new("The hours of the study");
+    let mut section = Section::new("The hours of the study")
+        .asking("What weather, shade and passengers do the hours have that all numbers come from?");
     for (file, caption, chart) in [
-        ("shadow_fraction.svg", "Shadow fraction on three days", shadow(study)),
-        ("scenarios_overview.svg", "Disturbances of all samples", Some(disturbances(&study.disturbance_bins))),
-        ("pmv_range.svg", "Votes at the optima", votes(study)),
+        ("shadow_fraction", "Shadow fraction on three days", shadow(study)),
+        ("scenarios_overview", "Disturbances of all samples", Some(disturbances(&study.disturbance_bins))),
+        ("pmv_range", "Votes at the optima", votes(study)),
     ] {
         if let Some(chart) = chart {
-            section = section.with_figure(file, caption, chart_svg(&chart)?);
+            section = section.with_chart(file, caption, chart);
         }
     }
-    Ok(Some(section))
+    Some(
+        section
+            .with(Block::means(
+                "All numbers hold for hours like these. A colder place, fuller buses or doors that open more often give others: the same study\n\
+                 file with other inputs says which.",
+            ))
+            .with(Block::limits(
+                "A sample is the mean of its hour. What doors, passengers and sun do within the hour is in the simulation alone.",
+            )),
+    )
 }
 
 /// Three days of the year (paper, figure `shadow-fraction`); none where no shade is stored.
@@ -46,7 +56,7 @@ fn shadow(study: &StudyReport) -> Option<Chart> {
             Some((f64::from(hour), *value?))
         };
         let style = Style { marker: Some(marker), ..style };
-        Some(Mark::Line { name: name.to_owned(), style, points: (0..=24).filter_map(at).collect() })
+        Some(Mark::line(name, style, (0..=24).filter_map(at).collect()))
     };
     (!study.shadow.is_empty()).then(|| Chart {
         title: "Shadow fraction".to_owned(),
@@ -85,11 +95,10 @@ fn disturbances(bins: &[DisturbanceBin]) -> Chart {
         outline(rows.map(|b| (b.ends.map(|end| end * scale), b.samples as f64)))
     };
     let filled = |name: &str, style: Style, points: Vec<(f64, f64)>| {
-        let band = points.iter().map(|(x, y)| (*x, [0.0, *y])).collect();
-        [Mark::Band { style, points: band }, Mark::Line { name: name.to_owned(), style, points }]
+        [Mark::Area { name: name.to_owned(), style, points: points.clone() }, Mark::line(name, style, points)]
     };
     let plain = Style::line(IN_TIME, "", 0.8);
-    let panel = |x: Axis, marks: Vec<Mark>| Panel { x, y: Axis::default().from(0.0), marks, ..Panel::default() };
+    let panel = |x: Axis, marks: Vec<Mark>| Panel { x, y: Axis::new("samples").from(0.0), marks, ..Panel::default() };
     let one = |quantity: &str, scale, x: Axis| panel(x, filled("", plain, of(quantity, scale)).into());
     let sun = [
         filled("direct normal irradiance", Style::line(SUN, "", 0.9), of("dni_w_m2", 1.0)),
@@ -127,7 +136,7 @@ fn votes(study: &StudyReport) -> Option<Chart> {
     let mut marks = Vec::new();
     for (of, style) in nearest_windows(&windows).into_iter().zip(FROM_COLD_TO_WARM) {
         let bins = rows.iter().filter(|b| b.window == of).map(|b| (b.ends, 100.0 * b.weight));
-        marks.push(Mark::Line { name: format!("PMV {}", window(of)), style, points: outline(bins) });
+        marks.push(Mark::line(format!("PMV {}", window(of)), style, outline(bins)));
     }
     (!marks.is_empty()).then(|| Chart {
         title: format!("What passengers vote at the optima of {design}"),

@@ -4,33 +4,35 @@ use cabin::{ComfortWindow, OperatingMode};
 use setpoints::{CurtainThreshold, Profile, published};
 use store::{Cloud, CloudPoint, SetpointRow};
 
+use crate::StudyReport;
 use crate::document::{Block, DataTable, Section, Table};
 use crate::figure::palette::{BLACK, COOLING, DASHED, HEATING, REST, Style};
-use crate::figure::{Axis, Chart, Mark, Panel, chart_svg};
+use crate::figure::{Axis, Chart, Mark, Panel};
 use crate::numbers::{optional, percent, signed, text, window};
-use crate::{ReportError, StudyReport};
 
 /// Published setpoints beside the clouds: name, colour and dashes. The paper's second is not public.
 const SHOWN: [(&str, &str, &str); 3] =
     [("vdv-comfort", "#cc79a7", ""), ("vbz-18", "#009e73", DASHED), ("vecto", "#8a6d00", "1.5 1.5")];
 
-pub(super) fn section(study: &StudyReport) -> Result<Option<Section>, ReportError> {
+pub(super) fn section(study: &StudyReport) -> Option<Section> {
     if study.setpoints.is_empty() {
-        return Ok(None);
+        return None;
     }
-    let mut section = Section { tables: data(study), ..Section::new("Setpoints for a controller on board") }.with(
+    let mut section = Section { tables: data(study), ..Section::new("Setpoints for a controller on board") }
+        .asking("Which temperatures should a control aim at that knows no more than the temperatures of now?")
+        .with(
         Block::words(
             "What a controller that knows the temperatures of now can learn from the optima: a heating profile along the upper edge of the hours that\n\
              heat, a cooling profile along the lower edge of those that cool, thresholds of the air curtains. All designs and windows are in\n\
              setpoint_profile.csv and curtain_threshold.csv; `busclimate control` writes them as files that a bus can load.",
         ),
     );
-    let Some(design) = study.clouds.first().map(|c| &c.design) else { return Ok(Some(section)) };
-    let (file, caption) = ("temperature_setpoints.svg", "Optima with the extracted setpoints, and published ones");
-    section = section.with_figure(file, caption, chart_svg(&profiles(study, design))?);
+    let Some(design) = study.clouds.first().map(|c| &c.design) else { return Some(section) };
+    let (file, caption) = ("temperature_setpoints", "Optima with the extracted setpoints, and published ones");
+    section = section.with_chart(file, caption, profiles(study, design));
     if let Some(figure) = curtains(study, design) {
-        let (file, caption) = ("aircurtain_setpoint.svg", "When the air curtains run, with their thresholds");
-        section = section.with_figure(file, caption, chart_svg(&figure)?);
+        let (file, caption) = ("aircurtain_setpoint", "When the air curtains run, with their thresholds");
+        section = section.with_chart(file, caption, figure);
     }
     let columns = [
         "heats to °C (outside)",
@@ -45,7 +47,18 @@ pub(super) fn section(study: &StudyReport) -> Result<Option<Section>, ReportErro
         "model K",
     ];
     let rows = study.setpoints.iter().filter(|row| row.design == *design).map(row).collect();
-    Ok(Some(section.with(Block::Table(Table::new(&["PMV"], &columns, rows)))))
+    Some(
+        section
+            .with(Block::Table(Table::new("setpoint_profile.csv", &["PMV"], &columns, rows)))
+            .with(Block::means(
+                "A bus that heats to the heating profile is at least as warm as the optimum of its hour in the share of hours under “covers”, and\n\
+                 as cool or cooler with the cooling profile. Curtains pay where the air inside and outside differ by more than the threshold.",
+            ))
+            .with(Block::limits(
+                "A profile knows the ambient temperature alone: in sun, or with many passengers, it asks for more than the optimum of the hour\n\
+                 does. Beyond the temperatures in brackets it has seen no hour.",
+            )),
+    )
 }
 
 /// The paper's three windows of its figure `temperature-setpoints`, or those among these that are nearest.
@@ -106,7 +119,7 @@ fn profiles(study: &StudyReport, design: &str) -> Chart {
         let points = (0..=((to_c - from_c).max(0.0) * 4.0) as i64).map(|i| from_c + i as f64 / 4.0);
         // What lies beyond the axes is left out.
         let shown = |setpoint_c: f64| if (low_c..=high_c).contains(&setpoint_c) { setpoint_c } else { f64::NAN };
-        Mark::Line { name: name.to_owned(), style, points: points.map(|t| (t, shown(of.at(t)))).collect() }
+        Mark::line(name, style, points.map(|t| (t, shown(of.at(t)))).collect())
     };
     // The same axes on all panels.
     let panel = |title: String, marks| Panel {
@@ -136,7 +149,11 @@ fn profiles(study: &StudyReport, design: &str) -> Chart {
         found.map_or_else(Vec::new, |p| {
             let mut lines = vec![line(name, style, &p.heating, [from_c, to_c])];
             if !p.is_single() {
-                lines.push(line("", style, &p.cooling, [p.cooling.valid_c[0].max(from_c), to_c]));
+                let mut cooling = line(name, style, &p.cooling, [p.cooling.valid_c[0].max(from_c), to_c]);
+                if let Mark::Line { what, .. } = &mut cooling {
+                    *what = "cooling";
+                }
+                lines.push(cooling);
             }
             lines
         })

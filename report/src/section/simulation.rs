@@ -2,9 +2,11 @@
 
 use store::SimulatedYear;
 
-use super::weights_note;
+use super::{value, weights_note};
 use crate::StudyReport;
 use crate::document::{Block, DataTable, Section, Span, Table};
+use crate::figure::palette::of_designs;
+use crate::figure::{Axis, Chart, Mark, Panel};
 use crate::numbers::{of_point, optional, percent, signed, signed_percent_within, text, watts, window, within};
 
 pub(super) fn section(study: &StudyReport) -> Option<Section> {
@@ -16,7 +18,8 @@ pub(super) fn section(study: &StudyReport) -> Option<Section> {
         return None;
     }
     tables.push(data(study));
-    let section = Section { tables, ..Section::new("Steady state against simulation") };
+    let section = Section { tables, ..Section::new("Steady state against simulation") }
+        .asking("How far are the optima of single hours from what a bus takes second by second?");
     let rows: Vec<Vec<String>> = comparisons(study).iter().map(|c| row(c, study)).collect();
     let columns = [
         "steady state W",
@@ -48,9 +51,65 @@ pub(super) fn section(study: &StudyReport) -> Option<Section> {
                 ),
                 cause("averaging", ": what doors, passengers and weather do within a segment."),
             ]))
-            .with(Block::Table(Table::new(&["design", "PMV"], &columns, rows)))
-            .with(weights_note(study)),
+            .with(chart(study).map(|chart| Block::chart("simulation", "Simulation less steady state", chart)))
+            .with(Block::Table(Table::new("simulation_annual.csv", &["design", "PMV"], &columns, rows)))
+            .with(weights_note(study))
+            .with(meaning(study))
+            .with(Block::limits(
+                "The simulated control is told the optimum of each hour, which a bus on the road does not know; causal controllers have a\n\
+                 section of their own.",
+            )),
     )
+}
+
+/// How far simulation and steady state are apart, in percent of the latter.
+fn difference_percent(y: &SimulatedYear) -> f64 {
+    100.0 * (y.mean_hvac_power_w / y.static_mean_hvac_power_w - 1.0)
+}
+
+fn meaning(study: &StudyReport) -> Option<Block> {
+    let all: Vec<f64> = comparisons(study).iter().map(|c| difference_percent(c.paper)).collect();
+    let all = || all.iter().copied().filter(|d| d.is_finite());
+    let (least, most) = (all().reduce(f64::min)?, all().reduce(f64::max)?);
+    Some(Block::Means(value(format!(
+        "Over all designs and windows that are simulated, the year takes {} to {} % of power against steady state: so far the annual \
+         means of this report stand for a bus in motion.",
+        signed(least, 1),
+        signed(most, 1)
+    ))))
+}
+
+/// The difference over the comfort window.
+fn chart(study: &StudyReport) -> Option<Chart> {
+    let names = study.design_names();
+    let years = comparisons(study);
+    let mut marks = Vec::new();
+    for (name, style) in names.iter().zip(of_designs(&names)) {
+        let mut of: Vec<&SimulatedYear> =
+            years.iter().map(|c| c.paper).filter(|y| y.design == *name && y.window.is_symmetric()).collect();
+        of.sort_by(|a, b| a.window.pmv_limit().total_cmp(&b.window.pmv_limit()));
+        let ends = |y: &SimulatedYear| {
+            let found = of_point(&study.simulation_intervals, &y.design, y.window, &y.controller)?;
+            Some((y.window.pmv_limit(), found.relative_difference?.map(|end| 100.0 * end)))
+        };
+        let band = of.iter().filter_map(|y| ends(y)).collect();
+        let at = |y: &&SimulatedYear| (y.window.pmv_limit(), difference_percent(y));
+        let points = of.iter().map(at).filter(|(_, d)| d.is_finite()).collect();
+        marks.push(Mark::Band { name: (*name).to_owned(), style, points: band });
+        marks.push(Mark::line(*name, style, points));
+    }
+    marks.iter().any(|m| matches!(m, Mark::Line { points, .. } if points.len() > 1)).then(|| Chart {
+        title: "Simulation less steady state".to_owned(),
+        told: "Difference of the annual mean HVAC power in percent of steady state; bands: 90 % intervals.".to_owned(),
+        columns: 1,
+        panels: vec![Panel {
+            x: Axis::new("limit of |PMV|").from(0.0),
+            y: Axis::new("difference in %"),
+            marks,
+            ..Panel::default()
+        }],
+        height: 110.0,
+    })
 }
 
 /// The annual mean of one design and window: in steady state, simulated as in the paper, and the causes of the difference.

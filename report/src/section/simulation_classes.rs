@@ -37,7 +37,7 @@ pub(super) fn section(study: &StudyReport) -> Option<Section> {
                 "Means over all seconds of a class. The PMV is the mean over the missions of the largest 15-minute vote, up or down, while somebody is on board.\n\
                  All designs and windows are in simulation_classes.csv.",
             ))
-            .with(Block::Table(Table::new(&["", ""], &columns, rows.collect()))),
+            .with(Block::Table(Table::new("simulation_classes.csv", &["by", "class"], &columns, rows.collect()))),
     )
 }
 
