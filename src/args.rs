@@ -83,8 +83,14 @@ pub enum Command {
     /// Extract setpoints for a controller on board from the optima, drive every mission by them and by published ones, and write
     /// the setpoints as files.
     Control(ControlArgs),
-    /// Write tables and figures.
-    Report(StudyArgs),
+    /// Write the report: a page, and beside it every figure and table as files of their own.
+    Report {
+        #[command(flatten)]
+        study: StudyArgs,
+        /// Write nothing; say whether the report in this folder still follows from the database. Exit status 1 where it does not.
+        #[arg(long, value_name = "DIR")]
+        check: Option<PathBuf>,
+    },
     /// All stages, only what is missing; without a study file it makes a demo and runs that.
     Run {
         #[command(flatten)]
@@ -169,7 +175,7 @@ impl Command {
                 | Self::Solve(_)
                 | Self::Simulate(_)
                 | Self::Control(_)
-                | Self::Report(_)
+                | Self::Report { check: None, .. }
                 | Self::Run { .. }
                 | Self::Verify { .. }
         )

@@ -99,7 +99,10 @@ fn dispatch(args: &Args, console: &Console) -> Result<Ending, Failure> {
             print::setpoints(&folder, &found)?;
             Ok(ending)
         }
-        Command::Report(study) => run(&open(study)?, &[Stage::Report], options, console),
+        Command::Report { study, check: None } => run(&open(study)?, &[Stage::Report], options, console),
+        Command::Report { study, check: Some(folder) } => {
+            print::report_check(folder, &pipeline::check_report(&open(study)?, folder)?)
+        }
         Command::Run { solve: typed, dry_run: true } => {
             let study = open(&typed.study)?.solved_by(typed.method.into());
             print::plan(&pipeline::plan(&study, args.rehash)?)?;

@@ -3,7 +3,8 @@
 use anyhow::anyhow;
 use cabin::{ComfortWindow, OperatingMode, celsius};
 use pipeline::{
-    Check, Done, Fetched, FetchedFile, Point, SetpointRow, Shown, Stage, StagePlan, Status, Verification, write_whole,
+    Check, Done, Fetched, FetchedFile, Point, ReportCheck, SetpointRow, Shown, Stage, StagePlan, Status, Verification,
+    write_whole,
 };
 use serde::Serialize;
 use solve::Method;
@@ -39,6 +40,25 @@ pub fn run(study: &Study, stages: &[Stage], done: &Done, elapsed: Duration) -> R
         ([Stage::Report], 1..) => Ok(Ending::Pending),
         _ => Ok(Ending::of(summary.is_complete() && done.news.is_empty())),
     }
+}
+
+pub fn report_check(folder: &Path, check: &ReportCheck) -> Result<Ending, Failure> {
+    for (name, difference) in &check.different {
+        say(format_args!("{}: {}", folder.join(name).display(), difference.words()))?;
+    }
+    if let Some([then, now]) = &check.of_another {
+        say(format_args!("the report is of: {then}"))?;
+        say(format_args!("the database is: {now}"))?;
+    }
+    let (files, other) = (check.files, check.different.len());
+    if other == 0 {
+        say(format_args!("all {files} files of the report follow from the database"))?;
+    } else {
+        say(format_args!(
+            "{other} files differ from the {files} that follow from the database; `busclimate report` writes them"
+        ))?;
+    }
+    Ok(Ending::of(other == 0))
 }
 
 pub fn setpoints(folder: &Path, found: &[SetpointRow]) -> Result<(), Failure> {

@@ -136,7 +136,7 @@ pub(crate) fn say_stale(
 }
 
 /// What the database holds for the report.
-fn content(study: &Study, store: &mut Store) -> Result<StudyReport, PipelineError> {
+pub(crate) fn content(study: &Study, store: &mut Store) -> Result<StudyReport, PipelineError> {
     let setpoints = store.setpoints()?;
     let control_years = store.control_years()?;
     let mut clouds = Vec::new();

@@ -78,7 +78,7 @@
     const plot = figure.querySelector(".plot");
     const svg = plot.querySelector("svg");
     const view = svg.viewBox.baseVal;
-    const line = document.createElementNS("http://www.w3.org/2000/svg", "path");
+    const line = document.createElementNS(svg.namespaceURI, "path");
     line.setAttribute("class", "cursor");
     svg.append(line);
     const readout = make("p", { className: "readout" });

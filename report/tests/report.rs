@@ -181,6 +181,9 @@ fn prop_text_from_outside_breaks_neither_tables_nor_spreadsheets() {
     });
     let text = file(&study, "report.md");
     assert!(!text.contains("<script>") && !text.contains("<b>"), "{text}");
+    let page = file(&study, "report.html");
+    assert_eq!((page.matches("<script").count(), page.matches("</script").count()), (1, 1), "the page's own");
+    assert!(!page.contains("<b>") && page.contains("a note with &lt;b&gt;"));
     for line in text.lines().filter(|l| l.starts_with("| @x")) {
         assert_eq!(line, r"| @x\|y, line 1, column -c | empty | 1 | line break \| \*bar\* |");
     }
