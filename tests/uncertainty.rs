@@ -32,6 +32,17 @@ fn prop_intervals_hold_their_figures() {
             assert!(ends[0] <= ends[1] && ends[1] <= ends[2] && (ends[0] < ends[2] || ends[1] == 0.0), "{ends:?}");
         }
     }
+    // What more comfort costs is that of the averages, and surer than what either takes: a cold year is cold for both.
+    let costs = scratch.query(
+        "SELECT i.change_vs_pmv_1_low, i.change_vs_pmv_1, i.change_vs_pmv_1_high, i.hvac_power_w / o.hvac_power_w - 1,
+            (i.hvac_power_high_w - i.hvac_power_low_w) / o.hvac_power_w
+         FROM annual_interval AS i JOIN annual_average AS o USING (design) WHERE o.pmv_limit = 1",
+    );
+    assert_eq!(costs.len(), 15);
+    for row in costs.iter().map(|row| numbers(row)) {
+        assert!(row[0] <= row[1] && row[1] <= row[2] && (row[1] - row[3]).abs() < 1e-12, "{row:?}");
+        assert!(row[2] - row[0] < row[4], "{row:?}");
+    }
     // What is saved is surer than what is taken: the weather of a drawn year is the same for both designs.
     let paired = scratch.query(
         "SELECT p.saving_high - p.saving_low, (a.hvac_power_high_w - a.hvac_power_low_w) / o.hvac_power_w

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use crate::numbers::{percent_within, watts, window, within};
+use crate::numbers::{percent_within, window, within};
 use crate::study_report::StudyReport;
 
 /// The cheapest design, whatever it is called, beside the one that others are compared with, and what more comfort costs. Means
@@ -23,11 +23,11 @@ pub(crate) fn answer(study: &StudyReport) -> Option<String> {
         None => text.push('.'),
     }
     let stricter = study.windows().into_iter().find(|w| w.is_symmetric() && w.pmv_limit() == shown.pmv_limit() / 2.0);
-    if let Some((stricter, more_w)) = stricter
+    if let Some((stricter, (more, ends))) = stricter
         .filter(|_| shown.is_symmetric() && shown.pmv_limit() > 0.0)
-        .and_then(|w| Some((w, study.annual_power_w(design, w)? - power_w)))
+        .and_then(|w| Some((w, study.change(design, w, shown)?)))
     {
-        let _ = write!(text, " Comfort within PMV {} costs {} W more.", window(stricter), watts(Some(more_w)));
+        let _ = write!(text, " Comfort within PMV {} takes {} more.", window(stricter), percent_within(more, ends));
     }
     Some(text)
 }

@@ -53,8 +53,13 @@
   const choices = all(document, ".choice");
   choices.forEach((choice, place) => {
     const options = [...choice.children];
+    const first = options.find((o) => o.open);
+    options.forEach((o) => {
+      Object.assign(o, { hidden: o !== first, open: true });
+      o.querySelector("summary").hidden = true;
+    });
     const id = "choice-" + place;
-    const select = make("select", { id }, ...options.map((o) => make("option", { selected: !o.hidden }, o.dataset.option)));
+    const select = make("select", { id }, ...options.map((o) => make("option", { selected: o === first }, o.dataset.option)));
     select.addEventListener("change", () => choices.forEach((other) => {
       if (other.dataset.choice !== choice.dataset.choice) return;
       const wanted = [...other.children].filter((o) => o.dataset.option === select.value);

@@ -17,6 +17,8 @@ pub struct AnnualInterval {
     pub hvac_power_w: Ends,
     /// Fraction saved against the design `ptc`.
     pub reduction_vs_ptc: Ends,
+    /// Power over that of the same design at PMV ±1, less 1.
+    pub change_vs_pmv_1: Ends,
 }
 
 /// A row of `design_interval`.
@@ -84,6 +86,7 @@ impl Store {
                 window: window(r)?,
                 hvac_power_w: ends(r, "hvac_power_low_w", "hvac_power_high_w")?,
                 reduction_vs_ptc: ends(r, "reduction_vs_ptc_low", "reduction_vs_ptc_high")?,
+                change_vs_pmv_1: ends(r, "change_vs_pmv_1_low", "change_vs_pmv_1_high")?,
             })
         })
     }

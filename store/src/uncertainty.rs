@@ -51,6 +51,8 @@ pub struct AnnualEnds {
     pub kwh_per_km: Ends,
     /// Fraction saved against the design `ptc`, drawn together with it.
     pub reduction_vs_ptc: Ends,
+    /// Power over that of the same design at PMV ±1, less 1, drawn together with it.
+    pub change_vs_pmv_1: Ends,
 }
 
 /// How sure it is what a design saves against another one in the same window.
@@ -257,6 +259,8 @@ async fn put_annual(
         .set("kwh_per_km_high", high(ends.kwh_per_km))?
         .set("reduction_vs_ptc_low", low(ends.reduction_vs_ptc))?
         .set("reduction_vs_ptc_high", high(ends.reduction_vs_ptc))?
+        .set("change_vs_pmv_1_low", low(ends.change_vs_pmv_1))?
+        .set("change_vs_pmv_1_high", high(ends.change_vs_pmv_1))?
         .set("day_count", all.day_count.cast_signed())?
         .set("single_day_month_count", all.single_day_months.cast_signed())?
         .set("run_id", run_id)?;

@@ -105,7 +105,7 @@ await page.close();
 
 // Without script.
 const plain = await open(1400, "light", false);
-found.plain = await plain.$$eval("svg", (all) => all.filter((s) => s.getBoundingClientRect().width > 100).length);
+found.plain = await plain.$$eval("svg", (all) => all.filter((s) => s.checkVisibility()).length);
 found.plain_tables = await plain.$$eval("table", (all) => all.length);
 found.plain_controls = await plain.$$eval("input, select, button", (all) => all.length);
 await plain.close();

@@ -63,7 +63,7 @@ pub const CONTENT: [&str; 38] = [
         ORDER BY month, name, pmv_min, pmv_max",
     "SELECT design, pmv_min, pmv_max, hvac_power_w, hvac_power_low_w, hvac_power_high_w, heating_power_low_w,
         heating_power_high_w, cooling_power_low_w, cooling_power_high_w, kwh_per_km_low, kwh_per_km_high,
-        reduction_vs_ptc_low, reduction_vs_ptc_high, day_count, single_day_month_count FROM annual_interval",
+        reduction_vs_ptc_low, reduction_vs_ptc_high, change_vs_pmv_1, change_vs_pmv_1_low, change_vs_pmv_1_high, day_count, single_day_month_count FROM annual_interval",
     "SELECT design, other_design, pmv_min, pmv_max, other_takes_more_w, other_takes_more_low_w, other_takes_more_high_w,
         saving, saving_low, saving_high FROM design_interval",
     "SELECT design, pmv_min, pmv_max, month, sample_count, day_count, standard_error_w, effective_sample_count

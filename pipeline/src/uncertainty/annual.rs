@@ -35,6 +35,11 @@ impl OfWindow {
         Self { designs, values }
     }
 
+    /// What a design takes in each drawn year, in W.
+    fn powers(&self, design: usize) -> impl Iterator<Item = f64> + '_ {
+        self.values.chunks_exact(self.designs * OUTPUTS).map(move |of| of[design * OUTPUTS])
+    }
+
     fn ends(&self, value: impl Fn(&[f64]) -> f64) -> Ends {
         interval(self.values.chunks_exact(self.designs * OUTPUTS).map(value))
     }
@@ -57,13 +62,19 @@ fn pairs(year: &Year<'_>) -> impl Iterator<Item = ([usize; 2], usize)> {
     (0..windows).flat_map(of).filter(|([a, b], _)| a != b)
 }
 
-/// Intervals of every design and window, and of every design against every other one in the same window.
-pub fn intervals(year: &Year<'_>, draws: &Draws, ptc: Option<usize>) -> (Vec<AnnualEnds>, Vec<PairEnds>) {
-    let drawn: Vec<OfWindow> = (0..year.windows).map(|window| OfWindow::new(year, draws, window)).collect();
+/// Intervals of every design and window, and of every design against every other one in the same window; `pmv_1` is the place of
+/// the window ±1.
+pub fn intervals(
+    year: &Year<'_>,
+    draws: &Draws,
+    ptc: Option<usize>,
+    pmv_1: Option<usize>,
+) -> (Vec<AnnualEnds>, Vec<PairEnds>) {
+    let all: Vec<OfWindow> = (0..year.windows).map(|window| OfWindow::new(year, draws, window)).collect();
     let power_w = |of: &[f64], design: usize| of[design * OUTPUTS];
     let saving = |of: &[f64], design, other| 1.0 - power_w(of, design) / power_w(of, other);
     let annual = |point: usize| {
-        let (design, drawn) = (point / year.windows, &drawn[point % year.windows]);
+        let (design, drawn) = (point / year.windows, &all[point % year.windows]);
         let at = |output: usize| drawn.ends(|of| of[design * OUTPUTS + output]);
         AnnualEnds {
             hvac_power_w: at(0),
@@ -71,13 +82,17 @@ pub fn intervals(year: &Year<'_>, draws: &Draws, ptc: Option<usize>) -> (Vec<Ann
             cooling_power_w: at(2),
             kwh_per_km: at(3),
             reduction_vs_ptc: ptc.and_then(|ptc| drawn.ends(|of| saving(of, design, ptc))),
+            change_vs_pmv_1: pmv_1.and_then(|place| {
+                let change = |(of, at_1): (f64, f64)| of / at_1 - 1.0;
+                interval(drawn.powers(design).zip(all[place].powers(design)).map(change))
+            }),
         }
     };
     let pair = |([design, other], window): ([usize; 2], usize)| PairEnds {
         designs: [design, other],
         window,
-        other_takes_more_w: drawn[window].ends(|of| power_w(of, other) - power_w(of, design)),
-        saving: drawn[window].ends(|of| saving(of, design, other)),
+        other_takes_more_w: all[window].ends(|of| power_w(of, other) - power_w(of, design)),
+        saving: all[window].ends(|of| saving(of, design, other)),
     };
     let wanted: Vec<_> = pairs(year).collect();
     ((0..year.points).into_par_iter().map(annual).collect(), wanted.into_par_iter().map(pair).collect())

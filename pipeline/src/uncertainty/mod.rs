@@ -56,18 +56,19 @@ impl<'m> Year<'m> {
 }
 
 /// How sure a year is, from the days of all months, those that have changed (`new`) and the others (`kept`), and from its classes.
-/// `ptc` is the place of the design with resistive heating.
+/// `ptc` is the place of the design with resistive heating, `pmv_1` that of the window ±1.
 pub fn uncertainty(
     new: Vec<MonthDays>,
     kept: &[MonthDays],
     classes: &[&MonthSums],
     [points, windows]: [usize; 2],
     ptc: Option<usize>,
+    pmv_1: Option<usize>,
 ) -> Uncertainty {
     let year = Year::new(kept.iter().chain(&new).collect(), points, windows);
     let months: Vec<u8> = year.places.keys().map(|day| day.month() as u8).collect();
     let single_day_months = single_day_months(&months) as u64;
-    let (annual, pairs) = annual::intervals(&year, &Draws::of_study(&months), ptc);
+    let (annual, pairs) = annual::intervals(&year, &Draws::of_study(&months), ptc, pmv_1);
     let spreads = months::spreads(&year);
     let left_out = left_out::left_out(&year, classes, ptc);
     let day_count = months.len() as u64;

@@ -92,16 +92,19 @@ impl Scale {
             (decimals..decimals + 2).find(|d| is_whole(self.step * 10_f64.powi(*d as i32))).unwrap_or(decimals + 1);
         let label = |value: f64| match ticks {
             Ticks::Numbers => format!("{:.decimals$}", value + 0.0).replace('-', "−"),
-            Ticks::Clock => {
-                let minutes = (value * 60.0).round() as i64;
-                format!("{:02}:{:02}", minutes / 60 % 24, minutes % 60)
-            }
+            Ticks::Clock => clock(value),
             Ticks::Months => month(value.round() as u8).chars().take(3).collect(),
             Ticks::None => String::new(),
         };
         let count = ((self.high - first) / self.step + 1e-9).floor().max(0.0) as usize;
         (0..=count).map(|i| first + i as f64 * self.step).map(|value| (value, label(value))).collect()
     }
+}
+
+/// Hours since midnight as a clock shows them.
+pub(super) fn clock(hours: f64) -> String {
+    let minutes = (hours * 60.0).round() as i64;
+    format!("{:02}:{:02}", minutes / 60 % 24, minutes % 60)
 }
 
 fn is_whole(value: f64) -> bool {

@@ -187,6 +187,7 @@ mod tests {
                 style: Style::of_place(0),
                 points: wave.iter().map(|(x, y)| (*x, [y - 20.0, y + 20.0])).collect(),
             },
+            Mark::Band { name: "b".to_owned(), style: Style::of_place(0), points: Vec::new() },
             Mark::line("<a>", Style::of_place(0), wave.clone()),
             Mark::line("b", Style::line(HEATING, "3 1.5", 1.0), broken),
             Mark::Dots { name: "c".to_owned(), colour: REST, points: wave },
@@ -231,7 +232,7 @@ mod tests {
         {
             assert!(texts.contains(&text), "{text} is missing in {texts:?}");
         }
-        for odd in ["NaN", "inf", "<style", "<script", "id=", "clip", "paint-order", "marker-end", "url("] {
+        for odd in ["NaN", "inf", "<style", "<script", "id=", "clip", "paint-order", "marker-end", "url(", "d=\"Z"] {
             assert!(!svg.contains(odd), "{odd}");
         }
     }

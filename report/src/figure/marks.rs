@@ -89,6 +89,9 @@ pub(super) fn extent(mark: &Mark) -> Vec<(f64, f64)> {
 
 pub(super) fn draw_mark(canvas: &mut Canvas, mark: &Mark, place: &Place) {
     let (left, right) = (place.left, place.left + place.width);
+    if extent(mark).is_empty() {
+        return;
+    }
     match mark {
         Mark::Line { style, points, .. } => {
             if points.len() > 1 && style.width > 0.0 {

@@ -1,6 +1,6 @@
 //! The values behind a chart: every one of them for spreadsheets, and tables that a reader can take in, a panel each.
 
-use super::axis::{Axis, Ticks};
+use super::axis::{Axis, Ticks, clock};
 use super::chart::{Chart, Panel, drawn};
 use super::marks::{Mark, Place};
 use crate::numbers::{month, significant, within};
@@ -205,10 +205,7 @@ fn on_line(points: &[(f64, f64)], x: f64) -> Option<f64> {
 /// A place on an axis in words.
 fn said(x: f64, ticks: &Ticks) -> String {
     match ticks {
-        Ticks::Clock => {
-            let minutes = (x * 60.0).round() as i64;
-            format!("{:02}:{:02}", minutes / 60 % 24, minutes % 60)
-        }
+        Ticks::Clock => clock(x),
         Ticks::Months => month(x.round() as u8).to_owned(),
         Ticks::Numbers | Ticks::None => significant(x),
     }

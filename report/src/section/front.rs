@@ -35,7 +35,7 @@ pub(super) fn section(study: &StudyReport) -> Section {
             Span::Value(comfort(shown)),
             Span::Text("."),
         ]))
-        .with(comfort_costs(study, shown, cheapest))
+        .with(comfort_costs(study, shown, cheapest.0))
         .with(pareto::in_words(study).map(|chart| {
             Block::chart("comfort_cost", "What comfort costs with each kind of equipment", chart)
         }))
@@ -114,15 +114,24 @@ fn by_kilometre_and_year(study: &StudyReport, shown: ComfortWindow, (cheapest, p
 }
 
 /// Half as far from neutral as what is shown, and twice as far.
-fn comfort_costs(study: &StudyReport, shown: ComfortWindow, (cheapest, power_w): (&str, f64)) -> Option<Block> {
+fn comfort_costs(study: &StudyReport, shown: ComfortWindow, cheapest: &str) -> Option<Block> {
     let of = |limit: f64| {
         let window = study.windows().into_iter().find(|w| w.is_symmetric() && w.pmv_limit() == limit)?;
         let other_w = study.annual_power_w(cheapest, window).filter(|w| *w > 0.0)?;
         let energy = kwh(study, cheapest, window, other_w, 1.0);
-        let change = 100.0 * (other_w / power_w - 1.0);
-        let more = if change < 0.0 { "less" } else { "more" };
-        let (kwh, range) = (energy.value.clone(), range(&energy));
-        let words = format!("{kwh} kWh for every hour in service{range}, {:.0} % {more}", change.abs());
+        let (change, ends) = study.change(cheapest, window, shown)?;
+        // Less is told as such, with the smaller end first.
+        let (more, sign) = if change < 0.0 { ("less", -100.0) } else { ("more", 100.0) };
+        let mut ends = ends.map(|ends| ends.map(|end| sign * end));
+        ends.iter_mut().for_each(|ends| ends.sort_by(f64::total_cmp));
+        let change = sure(sign * change, ends, 0);
+        let words = format!(
+            "{} kWh for every hour in service{}, {} %{} {more}",
+            energy.value,
+            range(&energy),
+            change.value,
+            range(&change)
+        );
         Some((comfort(window), words))
     };
     let (closer, wider) = (of(shown.pmv_limit() / 2.0), of(shown.pmv_limit() * 2.0));

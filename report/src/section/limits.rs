@@ -3,11 +3,11 @@
 use cabin::ComfortWindow;
 use store::LimitShare;
 
+use super::over_windows::{OverWindows, over_windows};
 use super::{by_window, value, weights_note};
 use crate::StudyReport;
 use crate::document::{Block, DataTable, Section, Table};
-use crate::figure::palette::of_designs;
-use crate::figure::{Axis, Chart, Mark, Panel};
+use crate::figure::{Axis, Chart};
 use crate::numbers::{percent, text, window};
 
 pub(super) fn section(study: &StudyReport) -> Option<Section> {
@@ -68,27 +68,16 @@ fn meaning(study: &StudyReport, w: ComfortWindow) -> Option<Block> {
 }
 
 fn chart(study: &StudyReport) -> Option<Chart> {
-    let names = study.design_names();
-    let line = |(name, style)| {
-        let rows =
-            study.limit_shares.iter().filter(|s| s.design == name && s.window.is_symmetric() && s.solved_count > 0);
-        let mut points: Vec<(f64, f64)> = rows.map(|s| (s.window.pmv_limit(), 100.0 * s.lower_weight)).collect();
-        points.sort_by(|a, b| a.0.total_cmp(&b.0));
-        Mark::line(name, style, points)
-    };
-    let marks: Vec<Mark> = names.iter().copied().zip(of_designs(&names)).map(line).collect();
-    marks.iter().any(|m| matches!(m, Mark::Line { points, .. } if points.len() > 1)).then(|| Chart {
+    let chart = OverWindows {
         title: "Time at the lower limit of comfort".to_owned(),
         told: "Share of the samples whose optimum lies at the lower limit of its comfort window, months weighted by their days."
             .to_owned(),
-        columns: 1,
-        panels: vec![Panel {
-            x: Axis::new("limit of |PMV|").from(0.0),
-            y: Axis::new("time at the lower limit in %").from(0.0),
-            marks,
-            ..Panel::default()
-        }],
+        quantity: Axis::new("time at the lower limit in %").from(0.0),
         height: 110.0,
+    };
+    over_windows(study, chart, |design, w| {
+        let of = |s: &&LimitShare| s.design == design && s.window == w && s.solved_count > 0;
+        study.limit_shares.iter().find(of).map(|s| (100.0 * s.lower_weight, None))
     })
 }
 

@@ -18,6 +18,7 @@ mod mission_hour;
 mod missions;
 mod model;
 mod monthly;
+mod over_windows;
 mod paper_numbers;
 mod pareto;
 mod quality;

@@ -1,11 +1,11 @@
 //! What designs save against resistive heating.
 
 use super::annual::interval_note;
+use super::over_windows::{OverWindows, over_windows};
 use super::{value, weights_note};
 use crate::StudyReport;
 use crate::document::{Block, Section, Table};
-use crate::figure::palette::of_designs;
-use crate::figure::{Axis, Chart, Mark, Panel};
+use crate::figure::{Axis, Chart};
 use crate::numbers::{percent, percent_within, window};
 
 pub(super) fn section(study: &StudyReport) -> Option<Section> {
@@ -53,28 +53,16 @@ fn meaning(study: &StudyReport) -> Option<Block> {
 }
 
 fn chart(study: &StudyReport) -> Option<Chart> {
-    let names = study.design_names();
-    let mut marks = Vec::new();
-    for (name, style) in names.iter().zip(of_designs(&names)).filter(|(name, _)| **name != "ptc") {
-        let mut rows: Vec<_> = study.annual.iter().filter(|r| r.design == **name && r.window.is_symmetric()).collect();
-        rows.sort_by(|a, b| a.window.pmv_limit().total_cmp(&b.window.pmv_limit()));
-        let points = rows.iter().filter_map(|r| Some((r.window.pmv_limit(), 100.0 * r.reduction_vs_ptc?))).collect();
-        let ends = |w| study.interval(name, w)?.reduction_vs_ptc;
-        let band = rows.iter().filter_map(|r| Some((r.window.pmv_limit(), ends(r.window)?.map(|end| 100.0 * end))));
-        marks.push(Mark::Band { name: (*name).to_owned(), style, points: band.collect() });
-        marks.push(Mark::line(*name, style, points));
-    }
-    marks.iter().any(|m| matches!(m, Mark::Line { points, .. } if !points.is_empty())).then(|| Chart {
+    let chart = OverWindows {
         title: "What designs save against resistive heating".to_owned(),
         told: "Share of the annual mean HVAC power of ptc in the same comfort window; bands: 90 % intervals."
             .to_owned(),
-        columns: 1,
-        panels: vec![Panel {
-            x: Axis::new("limit of |PMV|").from(0.0),
-            y: Axis::new("saving in %").from(0.0),
-            marks,
-            ..Panel::default()
-        }],
+        quantity: Axis::new("saving in %").from(0.0),
         height: 120.0,
+    };
+    over_windows(study, chart, |design, w| {
+        let share = study.annual_row(design, w)?.reduction_vs_ptc.filter(|_| design != "ptc")?;
+        let ends = study.interval(design, w).and_then(|r| r.reduction_vs_ptc);
+        Some((100.0 * share, ends.map(|ends| ends.map(|end| 100.0 * end))))
     })
 }

@@ -2,11 +2,11 @@
 
 use store::SimulatedYear;
 
+use super::over_windows::{OverWindows, over_windows};
 use super::{value, weights_note};
 use crate::StudyReport;
 use crate::document::{Block, DataTable, Section, Span, Table};
-use crate::figure::palette::of_designs;
-use crate::figure::{Axis, Chart, Mark, Panel};
+use crate::figure::{Axis, Chart};
 use crate::numbers::{of_point, optional, percent, signed, signed_percent_within, text, watts, window, within};
 
 pub(super) fn section(study: &StudyReport) -> Option<Section> {
@@ -81,34 +81,18 @@ fn meaning(study: &StudyReport) -> Option<Block> {
 
 /// The difference over the comfort window.
 fn chart(study: &StudyReport) -> Option<Chart> {
-    let names = study.design_names();
     let years = comparisons(study);
-    let mut marks = Vec::new();
-    for (name, style) in names.iter().zip(of_designs(&names)) {
-        let mut of: Vec<&SimulatedYear> =
-            years.iter().map(|c| c.paper).filter(|y| y.design == *name && y.window.is_symmetric()).collect();
-        of.sort_by(|a, b| a.window.pmv_limit().total_cmp(&b.window.pmv_limit()));
-        let ends = |y: &SimulatedYear| {
-            let found = of_point(&study.simulation_intervals, &y.design, y.window, &y.controller)?;
-            Some((y.window.pmv_limit(), found.relative_difference?.map(|end| 100.0 * end)))
-        };
-        let band = of.iter().filter_map(|y| ends(y)).collect();
-        let at = |y: &&SimulatedYear| (y.window.pmv_limit(), difference_percent(y));
-        let points = of.iter().map(at).filter(|(_, d)| d.is_finite()).collect();
-        marks.push(Mark::Band { name: (*name).to_owned(), style, points: band });
-        marks.push(Mark::line(*name, style, points));
-    }
-    marks.iter().any(|m| matches!(m, Mark::Line { points, .. } if points.len() > 1)).then(|| Chart {
+    let chart = OverWindows {
         title: "Simulation less steady state".to_owned(),
         told: "Difference of the annual mean HVAC power in percent of steady state; bands: 90 % intervals.".to_owned(),
-        columns: 1,
-        panels: vec![Panel {
-            x: Axis::new("limit of |PMV|").from(0.0),
-            y: Axis::new("difference in %"),
-            marks,
-            ..Panel::default()
-        }],
+        quantity: Axis::new("difference in %"),
         height: 110.0,
+    };
+    over_windows(study, chart, |design, w| {
+        let y = years.iter().map(|c| c.paper).find(|y| y.design == design && y.window == w)?;
+        let ends = of_point(&study.simulation_intervals, &y.design, y.window, &y.controller);
+        let ends = ends.and_then(|e| e.relative_difference).map(|ends| ends.map(|end| 100.0 * end));
+        Some((difference_percent(y), ends)).filter(|(d, _)| d.is_finite())
     })
 }
 

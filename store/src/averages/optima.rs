@@ -80,8 +80,12 @@ SELECT run_id, design, pmv_limit, pmv_min, pmv_max, hvac_power_w, sample_count, 
 FROM annual_average WHERE run_id IN (SELECT run_id FROM run)";
 
 /// Beside the intervals stand the figures that every other table has, to the last bit.
-pub const ANNUAL_INTERVAL: &str = "UPDATE annual_interval AS i SET hvac_power_w = a.hvac_power_w
-FROM annual_average AS a WHERE a.design = i.design AND a.pmv_min = i.pmv_min AND a.pmv_max = i.pmv_max";
+pub const ANNUAL_INTERVAL: &str = "UPDATE annual_interval AS i SET
+    hvac_power_w = a.hvac_power_w,
+    change_vs_pmv_1 = a.hvac_power_w / nullif(o.hvac_power_w, 0.0) - 1.0
+FROM annual_average AS a
+LEFT JOIN annual_average AS o ON o.design = a.design AND o.pmv_min = -1.0 AND o.pmv_max = 1.0
+WHERE a.design = i.design AND a.pmv_min = i.pmv_min AND a.pmv_max = i.pmv_max";
 
 pub const DESIGN_INTERVAL: &str = "UPDATE design_interval AS i SET
     other_takes_more_w = o.hvac_power_w - a.hvac_power_w,
