@@ -16,7 +16,10 @@ fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         let name = path.file_name().unwrap().to_string_lossy().into_owned();
-        if path.is_dir() && !name.starts_with('.') && name != "target" && name != "busclimate-demo" {
+        if path.is_dir()
+            && !name.starts_with('.')
+            && !["target", "busclimate-demo", "node_modules"].contains(&name.as_str())
+        {
             found.extend(files(&path, extension));
         } else if path.extension().is_some_and(|e| e == extension) {
             found.push(path);
@@ -90,6 +93,30 @@ fn prop_rooms_import_what_the_architecture_says() {
         above.push(room);
     }
     assert!(above.len() >= 10, "{above:?}");
+}
+
+#[test]
+fn prop_the_wheel_has_the_dependencies_of_the_program() {
+    let versions = |lock: &str| -> BTreeSet<(String, String)> {
+        let text = std::fs::read_to_string(root().join(lock)).unwrap();
+        let packages = text.split("[[package]]").skip(1).map(|package| {
+            let of =
+                |key: &str| package.lines().find_map(|l| l.strip_prefix(key)).unwrap().trim_matches('"').to_owned();
+            (of("name = "), of("version = "))
+        });
+        packages.collect()
+    };
+    let (program, wheel) = (versions("Cargo.lock"), versions("python/Cargo.lock"));
+    let of = |all: &BTreeSet<(String, String)>, name: &str| -> BTreeSet<String> {
+        all.iter().filter(|(other, _)| other == name).map(|(_, version)| version.clone()).collect()
+    };
+    let names: BTreeSet<&String> = program.iter().map(|(name, _)| name).collect();
+    // Arrow and PyO3 may bring further versions of what the program has.
+    let other: Vec<_> = names
+        .into_iter()
+        .filter(|name| !of(&wheel, name).is_empty() && of(&wheel, name).is_disjoint(&of(&program, name)))
+        .collect();
+    assert!(other.is_empty(), "python/Cargo.lock has other versions of {other:?}");
 }
 
 #[test]

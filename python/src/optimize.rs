@@ -1,0 +1,192 @@
+//! The cheapest steady-state operation of every sample, design and comfort window.
+
+use arrow_array::{ArrayRef, BooleanArray, Float64Array, Int8Array, Int64Array, RecordBatch, StringArray, UInt64Array};
+use arrow_cast::cast;
+use arrow_schema::DataType;
+use cabin::{Disturbances, Operation, Optimum, celsius, kelvin};
+use pyo3::prelude::*;
+use pyo3::types::PyAny;
+use pyo3_arrow::PyTable;
+use pyo3_arrow::input::AnyRecordBatch;
+use solve::{Grid, solve_blocks};
+use std::sync::Arc;
+
+use crate::arrow::{numbers, table};
+use crate::errors::data;
+use crate::settings::study;
+
+const ARGUMENT: &str = "samples";
+
+/// Samples of a batch, and what they are known by.
+struct Samples {
+    ids: Option<Int64Array>,
+    disturbances: Vec<Disturbances>,
+}
+
+/// The cheapest steady-state operation of every sample, design and comfort window: the kernel of `busclimate solve`.
+///
+/// Parameters
+/// ----------
+/// samples : Arrow table or batch (pyarrow, polars, pandas, busclimate)
+///     Columns ambient_temperature_c (or ambient_temperature_k), dni_w_m2, dhi_w_m2, solar_altitude_deg (or solar_altitude_rad),
+///     shadow_fraction (0 sun … 1 shade), passengers, door_open_fraction (0 … 1); sample_id comes along where it is there.
+/// designs : dict of dicts, optional
+///     The tables `[designs."name"]` of a study file: heating ("ptc" or "hp"), radiant_heaters, air_curtain, heating_cop,
+///     cooling_cop. The five of the paper where nothing is given.
+/// windows : list, optional
+///     Limits of the predicted mean vote, each L the window -L … L, or pairs of a lower and an upper limit. 0 … 2 in steps of
+///     0.125 where nothing is given.
+/// vehicle : dict, optional
+///     Constants of the bus as in `[vehicle]` of a study file; those of the paper where nothing is given.
+///
+/// Returns
+/// -------
+/// Table
+///     A row for each sample, design and window, in this order, with the columns of the view `optimum` (W, °C) and `sample`, the
+///     place of the sample. Where there is no operation, `status` says why and the numbers are null.
+///
+/// Raises
+/// ------
+/// InputError
+///     A column is missing, or a value is missing or outside its range; column, row and range are named.
+/// StudyError
+///     A design, window or constant is wrong.
+#[pyfunction]
+#[pyo3(signature = (samples, designs=None, windows=None, *, vehicle=None))]
+pub fn optimize(
+    py: Python<'_>,
+    samples: AnyRecordBatch,
+    designs: Option<&Bound<'_, PyAny>>,
+    windows: Option<&Bound<'_, PyAny>>,
+    vehicle: Option<&Bound<'_, PyAny>>,
+) -> PyResult<PyTable> {
+    let study = study(designs, windows, vehicle)?;
+    let (batches, _) = samples.into_table()?.into_inner();
+    py.detach(|| {
+        let mut rows = Rows::default();
+        for batch in &batches {
+            let samples = Samples::of(batch, rows.samples)?;
+            solve_blocks(&study.vehicle, &study.grid, &samples.disturbances, |first, optima| {
+                rows.add(&samples, first, optima, &study.grid);
+                true
+            });
+            rows.samples += samples.disturbances.len();
+        }
+        rows.table(&study.grid)
+    })
+}
+
+impl Samples {
+    fn of(batch: &RecordBatch, before: usize) -> PyResult<Self> {
+        let column = |name: &str| {
+            let missing = || {
+                data(
+                    ARGUMENT,
+                    format!(
+                        "column {name} is missing; it needs ambient_temperature_k or _c, dni_w_m2, \
+                dhi_w_m2, solar_altitude_rad or _deg, shadow_fraction, passengers, door_open_fraction"
+                    ),
+                )
+            };
+            numbers(ARGUMENT, batch, name)?.ok_or_else(missing)
+        };
+        // Either unit; that of the model has its own bits.
+        let either = |model: &str, other: &str, convert: fn(f64) -> f64| match numbers(ARGUMENT, batch, model)? {
+            Some(values) => Ok(values),
+            None => {
+                column(other).map(|values| Float64Array::from_iter_values(values.values().iter().map(|v| convert(*v))))
+            }
+        };
+        let ambient_k = either("ambient_temperature_k", "ambient_temperature_c", kelvin)?;
+        let altitude_rad = either("solar_altitude_rad", "solar_altitude_deg", f64::to_radians)?;
+        let [dni, dhi, shadow, passengers, doors] =
+            ["dni_w_m2", "dhi_w_m2", "shadow_fraction", "passengers", "door_open_fraction"].map(column);
+        let (dni, dhi, shadow, passengers, doors) = (dni?, dhi?, shadow?, passengers?, doors?);
+        let of = |i: usize| Disturbances {
+            ambient_temperature_k: ambient_k.value(i),
+            dni_w_m2: dni.value(i),
+            dhi_w_m2: dhi.value(i),
+            solar_altitude_rad: altitude_rad.value(i),
+            shadow_fraction: shadow.value(i),
+            passengers: passengers.value(i),
+            door_open_fraction: doors.value(i),
+        };
+        let disturbances: Vec<Disturbances> = (0..batch.num_rows()).map(of).collect();
+        for (i, d) in disturbances.iter().enumerate() {
+            d.check().map_err(|e| data(ARGUMENT, format!("row {}: {e}", before + i)))?;
+        }
+        let ids = batch.column_by_name("sample_id").map(|ids| {
+            let ids = cast(ids, &DataType::Int64).map_err(|e| data(ARGUMENT, format!("column sample_id: {e}")))?;
+            ids.as_any()
+                .downcast_ref::<Int64Array>()
+                .cloned()
+                .ok_or_else(|| data(ARGUMENT, "column sample_id: no whole numbers"))
+        });
+        Ok(Self { ids: ids.transpose()?, disturbances })
+    }
+}
+
+/// The rows of the result, a column each.
+#[derive(Default)]
+struct Rows {
+    samples: usize,
+    sample: Vec<u64>,
+    ids: Vec<Option<i64>>,
+    optima: Vec<Optimum>,
+}
+
+impl Rows {
+    fn add(&mut self, of: &Samples, first: usize, optima: &[Optimum], grid: &Grid) {
+        for (n, _) in optima.iter().enumerate() {
+            let sample = first + n / grid.points();
+            self.sample.push((self.samples + sample) as u64);
+            self.ids.push(of.ids.as_ref().map(|ids| ids.value(sample)));
+        }
+        self.optima.extend_from_slice(optima);
+    }
+
+    fn table(&self, grid: &Grid) -> PyResult<PyTable> {
+        let optima = || self.optima.iter();
+        let windows = || optima().map(|o| grid.windows()[o.window]);
+        let operations = || optima().map(|o| o.outcome.operation());
+        let real = |of: fn(&Operation) -> f64| -> ArrayRef {
+            Arc::new(operations().map(|o| o.map(of)).collect::<Float64Array>())
+        };
+        let flag = |of: fn(&Operation) -> bool| -> ArrayRef {
+            Arc::new(operations().map(|o| o.map(of)).collect::<BooleanArray>())
+        };
+        let mut columns: Vec<(&str, ArrayRef)> = vec![("sample", Arc::new(UInt64Array::from(self.sample.clone())))];
+        if self.ids.iter().any(Option::is_some) {
+            columns.push(("sample_id", Arc::new(Int64Array::from(self.ids.clone()))));
+        }
+        let names = optima().map(|o| grid.designs()[o.design].name.as_str());
+        let runner_up = |o: &Optimum| match o.outcome {
+            cabin::Outcome::Solved(_, excess_w) => excess_w,
+            cabin::Outcome::Infeasible(_) | cabin::Outcome::NotConverged => None,
+        };
+        columns.extend([
+            ("design", Arc::new(StringArray::from_iter_values(names)) as ArrayRef),
+            ("pmv_limit", Arc::new(Float64Array::from_iter_values(windows().map(|w| w.pmv_limit())))),
+            ("pmv_min", Arc::new(Float64Array::from_iter_values(windows().map(|w| w.pmv_min())))),
+            ("pmv_max", Arc::new(Float64Array::from_iter_values(windows().map(|w| w.pmv_max())))),
+            ("status", Arc::new(StringArray::from_iter_values(optima().map(|o| o.outcome.words())))),
+            ("hvac_power_w", real(Operation::hvac_power_w)),
+            ("air_unit_power_w", real(|o| o.air_unit_power_w)),
+            ("radiant_heater_power_w", real(|o| o.radiant_heater_power_w)),
+            ("air_curtain_power_w", real(|o| o.air_curtain_power_w)),
+            ("operating_mode", Arc::new(operations().map(|o| o.map(|o| o.mode.number())).collect::<Int8Array>())),
+            ("air_curtain_on", flag(|o| o.devices.air_curtain)),
+            ("radiant_heaters_on", flag(|o| o.devices.radiant_heaters)),
+            ("air_unit_heat_w", real(|o| o.air_unit_heat_w)),
+            ("cabin_temperature_c", real(|o| celsius(o.temperatures.cabin_k))),
+            ("interior_temperature_c", real(|o| celsius(o.temperatures.interior_k))),
+            ("shell_inside_temperature_c", real(|o| celsius(o.temperatures.shell_inside_k))),
+            ("shell_outside_temperature_c", real(|o| celsius(o.temperatures.shell_outside_k))),
+            ("radiant_heater_temperature_c", real(|o| celsius(o.temperatures.radiant_heater_k))),
+            ("mean_radiant_temperature_c", real(|o| celsius(o.mean_radiant_temperature_k))),
+            ("pmv", real(|o| o.pmv)),
+            ("runner_up_excess_w", Arc::new(optima().map(runner_up).collect::<Float64Array>())),
+        ]);
+        table(columns.into_iter().map(|(name, values)| (name.to_owned(), values)).collect())
+    }
+}

@@ -1,0 +1,204 @@
+"""The package as its users meet it: numbers of the program, data of other tools, errors that say what to do."""
+
+import math
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pandas as pd
+import polars as pl
+import pyarrow as pa
+import pytest
+
+import busclimate as bc
+
+PROGRAM = os.environ.get("BUSCLIMATE_PROGRAM")
+
+
+@pytest.fixture(scope="session")
+def study(tmp_path_factory: pytest.TempPathFactory) -> bc.Study:
+    """A demo that the program has made, run by the package."""
+    if PROGRAM is None:
+        pytest.skip("BUSCLIMATE_PROGRAM names no program")
+    folder = tmp_path_factory.mktemp("demo")
+    subprocess.run([PROGRAM, "demo", folder, "--missions", "24", "--quiet"], check=True)
+    text = (folder / "study.toml").read_text()
+    text = text.replace("{ from = 0.0, to = 2.0, step = 0.125 }", "[0.5, 1.0]")
+    (folder / "study.toml").write_text(text.replace("pmv_limits = [0.0, 0.5, 1.0, 1.5, 2.0]", "pmv_limits = [1.0]"))
+    opened = bc.Study.open(folder)
+    headline = opened.run()
+    assert headline[0].startswith("Within PMV ±1")
+    return opened
+
+
+def one(**changes: float) -> pa.Table:
+    """A cold hour."""
+    hour = {
+        "ambient_temperature_c": -5.0,
+        "dni_w_m2": 0.0,
+        "dhi_w_m2": 50.0,
+        "solar_altitude_deg": 10.0,
+        "shadow_fraction": 0.5,
+        "passengers": 20.0,
+        "door_open_fraction": 0.1,
+    }
+    return pa.table({name: [float(value)] for name, value in (hour | changes).items()})
+
+
+def test_optima_are_those_of_the_program_bit_for_bit(study: bc.Study) -> None:
+    """`optimize` on the study's samples gives every row of the view `optimum`."""
+    found = pl.DataFrame(bc.optimize(study.samples(), windows=[0.5, 1.0]))
+    stored = pl.DataFrame(study.table("optimum"))
+    keys = ["sample_id", "design", "pmv_limit"]
+    pair = stored.join(found, on=keys, suffix="_found")
+    assert pair.height == stored.height == found.height > 900
+    shared = [name for name in stored.columns if name in found.columns and name not in keys]
+    assert len(shared) == 19
+    for name in shared:
+        ours, theirs = pair[f"{name}_found"], pair[name]
+        assert ours.cast(theirs.dtype).equals(theirs, null_equal=True), name
+
+
+def test_missions_are_read_as_the_program_reads_them(study: bc.Study) -> None:
+    """`read_mission` gives the segments of the view `sample`."""
+    stored = pl.DataFrame(study.table("sample"))
+    path = Path(str(study.database)).parent / stored["source_path"][0]
+    found = pl.DataFrame(bc.read_mission(path))
+    pair = stored.filter(pl.col("mission") == stored["mission"][0]).join(found, on="sample_id", suffix="_found")
+    assert pair.height > 0
+    for name in ["passengers", "door_open_fraction", "start_utc", "first_line", "last_line", "distance_m"]:
+        assert pair[f"{name}_found"].equals(pair[name], null_equal=True), name
+
+
+def test_tables_are_those_of_the_dictionary(study: bc.Study) -> None:
+    """Every tool takes a table without more."""
+    table = study.table("annual_average")
+    as_pyarrow, as_polars = pa.table(table), pl.DataFrame(table)
+    as_pandas = pd.DataFrame.from_arrow(table)
+    assert as_pyarrow.num_rows == as_polars.height == len(as_pandas) == 10
+    assert as_pyarrow["hvac_power_w"].to_pylist() == as_polars["hvac_power_w"].to_list() == list(as_pandas["hvac_power_w"])
+    empty = pa.table(study.table("verification"))
+    assert empty.num_rows == 0 and "verification_id" in empty.column_names
+
+
+@pytest.mark.parametrize("make", [lambda t: t, pl.from_arrow, lambda t: t.to_pandas(), lambda t: t.to_batches()[0]])
+def test_any_arrow_data_will_do(make) -> None:  # noqa: ANN001
+    """pyarrow, polars, pandas, a batch: the same optimum."""
+    expected = pa.table(bc.optimize(one(), windows=[1.0]))
+    assert pa.table(bc.optimize(make(one()), windows=[1.0])).equals(expected)
+    assert expected.num_rows == 5 and expected["status"].to_pylist() == ["solved"] * 5
+    assert expected["design"].to_pylist() == ["ptc", "ptc+rh", "hp", "hp+rh", "hp+curtain"]
+
+
+def test_designs_windows_and_constants_are_those_of_a_study_file() -> None:
+    """What is given has the meaning that it has in a study file."""
+    own = {"own": {"heating": "hp", "air_curtain": True}}
+    rows = pa.table(bc.optimize(one(), own, [[-0.5, 0.7], [-1.0, 1.0]])).to_pylist()
+    assert [(r["design"], r["pmv_min"], r["pmv_max"]) for r in rows] == [("own", -0.5, 0.7), ("own", -1.0, 1.0)]
+    assert all(r["pmv_min"] - 1e-9 <= r["pmv"] <= r["pmv_max"] + 1e-9 for r in rows)
+    larger = pa.table(bc.optimize(one(), own, [[-1.0, 1.0]], vehicle={"shell_area_m2": 200.0})).to_pylist()
+    assert larger[0]["hvac_power_w"] > rows[1]["hvac_power_w"]
+    hot = pa.table(bc.optimize(one(ambient_temperature_c=59.0, passengers=400), own, [0.25])).to_pylist()
+    assert all((r["hvac_power_w"] is None) == (r["status"] != "solved") for r in hot)
+
+
+def test_votes_are_those_of_the_standard() -> None:
+    """ISO 7730:2005, table D.1, rows 1 to 4."""
+    air, radiant = [22.0, 27.0, 27.0, 23.5], [22.0, 27.0, 27.0, 25.5]
+    speed, humidity = [0.1, 0.1, 0.3, 0.1], [0.6, 0.6, 0.6, 0.6]
+    votes = bc.pmv(
+        pa.array(air),
+        pa.array(radiant),
+        clothing_clo=0.5,
+        metabolic_met=1.2,
+        relative_humidity=pa.array(humidity),
+        air_velocity_m_s=pa.array(speed),
+    )
+    for vote, printed in zip(pa.array(votes).to_pylist(), [-0.75, 0.77, 0.44, -0.01]):
+        assert math.isclose(vote, printed, abs_tol=0.01)
+
+
+@pytest.mark.parametrize(
+    ("call", "error", "words"),
+    [
+        (lambda: bc.optimize(one().drop_columns("passengers")), bc.InputError, "samples: column passengers is missing"),
+        (lambda: bc.optimize(one(shadow_fraction=1.5)), bc.InputError, "samples: row 0: shadow_fraction = 1.5 is outside 0 … 1"),
+        (lambda: bc.optimize(one(), {"x": {"heatin": "hp"}}), bc.StudyError, "did you mean"),
+        (lambda: bc.optimize(one(), windows=1.0), bc.StudyError, "windows: give"),
+        (lambda: bc.optimize(one(), designs=["hp"]), bc.StudyError, "designs: give a dict"),
+        (lambda: bc.optimize(one(), vehicle={"shell_area_m2": -1.0}), bc.StudyError, "shell_area_m2"),
+        (lambda: bc.read_mission("x.csv"), bc.InputError, "is not named like a mission"),
+        (lambda: bc.read_mission("x.csv", segment_s=0), bc.StudyError, "segment_s: is 0"),
+        (lambda: bc.Study.open("nowhere/study.toml"), bc.StudyError, "nowhere/study.toml"),
+        (
+            lambda: bc.pmv(20.0, pa.array([20.0, 21.0]), clothing_clo=pa.array([1.0, 1.0, 1.0]), metabolic_met=1.0,
+                           relative_humidity=0.5, air_velocity_m_s=0.1),
+            bc.InputError,
+            "mean_radiant_temperature_c: has 2 values where another argument has 3",
+        ),
+        (
+            lambda: bc.pmv(20.0, 20.0, clothing_clo=1.0, metabolic_met=1.0, relative_humidity=50.0, air_velocity_m_s=0.1),
+            bc.InputError,
+            "relative_humidity: value 0 is 50, outside 0 … 1",
+        ),
+    ],
+)
+def test_errors_name_the_argument_and_what_to_do(call, error: type[Exception], words: str) -> None:  # noqa: ANN001
+    """Nobody has to guess."""
+    with pytest.raises(error) as raised:
+        call()
+    assert words in str(raised.value)
+
+
+def test_stages_and_tables_that_are_not_there_are_named(study: bc.Study) -> None:
+    """With those that are."""
+    with pytest.raises(bc.StudyError, match='there is no stage "solv"; there are ingest'):
+        study.run(["solv"])
+    with pytest.raises(bc.StudyError, match='there is no table "optima"; there are'):
+        study.table("optima")
+
+
+def test_other_threads_run_meanwhile() -> None:
+    """Python's lock is free while the kernels compute."""
+    code = """
+import threading, time, pyarrow as pa, busclimate as bc
+n = 20000
+t = pa.table({k: [v] * n for k, v in dict(ambient_temperature_c=-5.0, dni_w_m2=0.0, dhi_w_m2=50.0, solar_altitude_deg=10.0,
+    shadow_fraction=0.5, passengers=20.0, door_open_fraction=0.1).items()})
+ticks, over = [], threading.Event()
+def tick():
+    while not over.is_set():
+        ticks.append(time.monotonic()); time.sleep(0.001)
+thread = threading.Thread(target=tick, daemon=True); thread.start()
+begin = time.monotonic(); bc.optimize(t); end = time.monotonic()
+over.set(); thread.join()
+print(sum(begin < at < end for at in ticks))
+"""
+    seen = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True, timeout=120)
+    assert int(seen.stdout) > 2
+
+
+def test_the_example_does_what_it_says(study: bc.Study) -> None:
+    """A reader can run it."""
+    example = Path(__file__).parent.parent / "examples" / "year.py"
+    folder = Path(str(study.database)).parent
+    told = subprocess.run([sys.executable, example, folder], check=True, capture_output=True, text=True, timeout=120)
+    assert "hvac_power_w_insulated" in told.stdout and "month" in told.stdout
+
+
+def test_annual_means_from_optima_are_those_of_the_program(study: bc.Study) -> None:
+    """Weighted by hand, to rounding."""
+    optima = pl.DataFrame(bc.optimize(study.samples(), windows=[1.0]))
+    weights = pl.DataFrame(study.table("sample")).select("sample_id", "weight")
+    power = (pl.col("hvac_power_w") * pl.col("weight")).sum() / pl.col("weight").sum()
+    means = optima.join(weights, on="sample_id").group_by("design").agg(power.alias("mean"))
+    stored = pl.DataFrame(study.table("annual_average")).filter(pl.col("pmv_limit") == 1.0)
+    for row in stored.join(means, on="design").iter_rows(named=True):
+        assert math.isclose(row["mean"], row["hvac_power_w"], rel_tol=1e-12), row["design"]
+
+
+def test_words_say_arguments_and_units() -> None:
+    """`help` is enough to begin."""
+    for function, words in [(bc.optimize, "door_open_fraction"), (bc.pmv, "clo"), (bc.read_mission, "segment_s")]:
+        assert words in (function.__doc__ or "") and "Raises" in (function.__doc__ or "")
