@@ -25,6 +25,7 @@ fn _busclimate(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<study::Study>()?;
     module.add_function(wrap_pyfunction!(comfort::pmv, module)?)?;
     module.add_function(wrap_pyfunction!(missions::read_mission, module)?)?;
+    module.add_function(wrap_pyfunction!(optimize::model_key, module)?)?;
     module.add_function(wrap_pyfunction!(optimize::optimize, module)?)?;
     Ok(())
 }

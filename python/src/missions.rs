@@ -1,6 +1,6 @@
 //! Mission files as the program reads them.
 
-use arrow_array::{ArrayRef, Float64Array, Int64Array, StringArray, UInt32Array};
+use arrow_array::{ArrayRef, Float64Array, Int32Array, Int64Array, StringArray};
 use chrono::{DateTime, SecondsFormat, Utc};
 use ingest::FileReader;
 use ingest::mission::{MissionOptions, MissionReading, MissionSource, RouteChoice, Segment, read};
@@ -74,7 +74,9 @@ pub fn time(time: DateTime<Utc>) -> String {
 fn segments(all: &[Segment]) -> PyResult<PyTable> {
     let real = |of: fn(&Segment) -> Option<f64>| -> ArrayRef { Arc::new(all.iter().map(of).collect::<Float64Array>()) };
     let whole = |of: fn(&Segment) -> i64| -> ArrayRef { Arc::new(Int64Array::from_iter_values(all.iter().map(of))) };
-    let small = |of: fn(&Segment) -> u32| -> ArrayRef { Arc::new(UInt32Array::from_iter_values(all.iter().map(of))) };
+    let small = |of: fn(&Segment) -> u32| -> ArrayRef {
+        Arc::new(Int32Array::from_iter_values(all.iter().map(|s| of(s) as i32)))
+    };
     let columns: Vec<(&str, ArrayRef)> = vec![
         ("sample_id", whole(|s| sample_id(s.bus, s.start))),
         ("mission", Arc::new(StringArray::from_iter_values(all.iter().map(|s| s.mission.as_str())))),

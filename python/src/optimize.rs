@@ -1,6 +1,7 @@
 //! The cheapest steady-state operation of every sample, design and comfort window.
 
-use arrow_array::{ArrayRef, BooleanArray, Float64Array, Int8Array, Int64Array, RecordBatch, StringArray, UInt64Array};
+use ::study::keys;
+use arrow_array::{ArrayRef, BooleanArray, Float64Array, Int8Array, Int64Array, RecordBatch, StringArray};
 use arrow_cast::cast;
 use arrow_schema::DataType;
 use cabin::{Disturbances, Operation, Optimum, celsius, kelvin};
@@ -61,9 +62,9 @@ pub fn optimize(
     vehicle: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<PyTable> {
     let study = study(designs, windows, vehicle)?;
-    let (batches, _) = samples.into_table()?.into_inner();
+    let (batches, schema) = samples.into_table()?.into_inner();
     py.detach(|| {
-        let mut rows = Rows::default();
+        let mut rows = Rows { has_ids: schema.column_with_name("sample_id").is_some(), ..Rows::default() };
         for batch in &batches {
             let samples = Samples::of(batch, rows.samples)?;
             solve_blocks(&study.vehicle, &study.grid, &samples.disturbances, |first, optima| {
@@ -74,6 +75,22 @@ pub fn optimize(
         }
         rows.table(&study.grid)
     })
+}
+
+/// What `optimize` computes with these designs, windows and constants, as a hash: equal keys give equal rows, whatever the machine.
+///
+/// It holds the version of the method. A cluster compares it, lest workers of another version compute a part.
+#[pyfunction]
+#[pyo3(signature = (designs=None, windows=None, *, vehicle=None))]
+pub fn model_key(
+    designs: Option<&Bound<'_, PyAny>>,
+    windows: Option<&Bound<'_, PyAny>>,
+    vehicle: Option<&Bound<'_, PyAny>>,
+) -> PyResult<String> {
+    let study = study(designs, windows, vehicle)?;
+    let windows = study.grid.windows().iter().map(|w| format!("{} {}", w.pmv_min(), w.pmv_max()));
+    let parts: Vec<String> = study.design_rows.iter().map(|row| row.design_key.clone()).chain(windows).collect();
+    Ok(keys::hash(&parts.iter().map(String::as_str).collect::<Vec<_>>()))
 }
 
 impl Samples {
@@ -130,7 +147,8 @@ impl Samples {
 #[derive(Default)]
 struct Rows {
     samples: usize,
-    sample: Vec<u64>,
+    has_ids: bool,
+    sample: Vec<i64>,
     ids: Vec<Option<i64>>,
     optima: Vec<Optimum>,
 }
@@ -139,7 +157,7 @@ impl Rows {
     fn add(&mut self, of: &Samples, first: usize, optima: &[Optimum], grid: &Grid) {
         for (n, _) in optima.iter().enumerate() {
             let sample = first + n / grid.points();
-            self.sample.push((self.samples + sample) as u64);
+            self.sample.push((self.samples + sample) as i64);
             self.ids.push(of.ids.as_ref().map(|ids| ids.value(sample)));
         }
         self.optima.extend_from_slice(optima);
@@ -155,8 +173,8 @@ impl Rows {
         let flag = |of: fn(&Operation) -> bool| -> ArrayRef {
             Arc::new(operations().map(|o| o.map(of)).collect::<BooleanArray>())
         };
-        let mut columns: Vec<(&str, ArrayRef)> = vec![("sample", Arc::new(UInt64Array::from(self.sample.clone())))];
-        if self.ids.iter().any(Option::is_some) {
+        let mut columns: Vec<(&str, ArrayRef)> = vec![("sample", Arc::new(Int64Array::from(self.sample.clone())))];
+        if self.has_ids {
             columns.push(("sample_id", Arc::new(Int64Array::from(self.ids.clone()))));
         }
         let names = optima().map(|o| grid.designs()[o.design].name.as_str());

@@ -1,9 +1,13 @@
 //! A whole study: run, and its tables.
 
-use arrow_array::{ArrayRef, Float64Array, Int64Array, StringArray, UInt32Array};
-use pipeline::{Options, PipelineError, Progress, Stage};
+use ::study::keys;
+use arrow_array::{ArrayRef, Float64Array, Int32Array, Int64Array, StringArray};
+use ingest::ExcludedSegment;
+use ingest::sample::{Sample, sample_id};
+use pipeline::{Inputs, MissionReader, MissionSamples, Options, PipelineError, Progress, Stage};
 use pyo3::prelude::*;
 use pyo3_arrow::PyTable;
+use rayon::prelude::*;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -20,7 +24,7 @@ const PORTION: usize = 65_536;
 
 /// A study file, ready to run.
 #[pyclass(frozen, module = "busclimate")]
-pub struct Study(study::Study);
+pub struct Study(::study::Study);
 
 /// Lets Ctrl-C end a run at its next safe place.
 #[derive(Default)]
@@ -51,7 +55,7 @@ impl Study {
     #[pyo3(signature = (path, *, database=None))]
     fn open(path: PathBuf, database: Option<PathBuf>) -> PyResult<Self> {
         let path = if path.is_dir() { path.join("study.toml") } else { path };
-        let study = study::Study::open(&path, database.as_deref()).map_err(|e| StudyError::new_err(e.to_string()))?;
+        let study = ::study::Study::open(&path, database.as_deref()).map_err(|e| StudyError::new_err(e.to_string()))?;
         Ok(Self(study))
     }
 
@@ -119,25 +123,102 @@ impl Study {
     /// The samples in the units of the model: what `optimize` turns into the optima of the study, bit for bit.
     fn samples(&self, py: Python<'_>) -> PyResult<PyTable> {
         let samples = py.detach(|| self.read(Store::samples))?;
-        let real = |of: fn(&cabin::Disturbances) -> f64| -> ArrayRef {
-            Arc::new(Float64Array::from_iter_values(samples.iter().map(|s| of(&s.disturbances))))
-        };
-        let columns: Vec<(&str, ArrayRef)> = vec![
-            ("sample_id", Arc::new(Int64Array::from_iter_values(samples.iter().map(|s| s.id)))),
-            ("mission", Arc::new(StringArray::from_iter_values(samples.iter().map(|s| s.segment.mission.as_str())))),
-            ("segment", Arc::new(UInt32Array::from_iter_values(samples.iter().map(|s| s.segment.segment)))),
-            ("start_utc", Arc::new(StringArray::from_iter_values(samples.iter().map(|s| time(s.segment.start))))),
-            ("month", Arc::new(UInt32Array::from_iter_values(samples.iter().map(|s| s.month.into())))),
-            ("ambient_temperature_k", real(|d| d.ambient_temperature_k)),
-            ("dni_w_m2", real(|d| d.dni_w_m2)),
-            ("dhi_w_m2", real(|d| d.dhi_w_m2)),
-            ("solar_altitude_rad", real(|d| d.solar_altitude_rad)),
-            ("shadow_fraction", real(|d| d.shadow_fraction)),
-            ("passengers", real(|d| d.passengers)),
-            ("door_open_fraction", real(|d| d.door_open_fraction)),
-        ];
-        table(columns.into_iter().map(|(name, values)| (name.to_owned(), values)).collect())
+        let rows: Vec<Row<'_>> = samples.iter().map(Row::Sample).collect();
+        table(sample_columns(&rows, false))
     }
+
+    /// The samples of mission files, read and joined with the study's weather and shade by the code of `ingest` and `shade`,
+    /// without a database: what a cluster maps over. Each file stands for itself: those that overlap are not looked for.
+    ///
+    /// Besides the columns of `samples` there are `path`, `outcome` and `reason`: a segment that gives no sample is a row
+    /// "excluded", a file that cannot be used a row "refused", both with the reason and without numbers.
+    ///
+    /// Raises InputError where weather or shade cannot be used.
+    fn read_missions(&self, py: Python<'_>, paths: Vec<PathBuf>) -> PyResult<PyTable> {
+        py.detach(|| {
+            let wrong = |e: PipelineError| InputError::new_err(e.to_string());
+            let inputs = Inputs::new(&self.0, false);
+            let reader = MissionReader::new(&self.0, &inputs).map_err(wrong)?;
+            let read: Vec<MissionSamples> = paths.par_iter().map(|path| reader.read(path)).collect();
+            let mut rows = Vec::new();
+            let mut names = Vec::new();
+            for (path, of) in paths.iter().zip(&read) {
+                match of {
+                    MissionSamples::Read(samples, excluded) => {
+                        rows.extend(samples.iter().map(Row::Sample));
+                        rows.extend(excluded.iter().map(Row::Excluded));
+                    }
+                    MissionSamples::Refused(reason) => rows.push(Row::Refused(reason)),
+                }
+                names.resize(rows.len(), path.to_string_lossy().into_owned());
+            }
+            let mut columns = sample_columns(&rows, true);
+            columns.push(("path".to_owned(), Arc::new(StringArray::from(names))));
+            table(columns)
+        })
+    }
+
+    /// What the samples of a mission are made with: readers, settings of the study and the version of both. Workers whose key is
+    /// another one give other samples.
+    fn reading_key(&self) -> String {
+        keys::mission_key(&self.0, "")
+    }
+}
+
+/// A row of samples.
+#[derive(Clone, Copy)]
+enum Row<'s> {
+    Sample(&'s Sample),
+    Excluded(&'s ExcludedSegment),
+    Refused(&'s str),
+}
+
+impl Row<'_> {
+    fn sample(&self) -> Option<&Sample> {
+        match self {
+            Self::Sample(sample) => Some(sample),
+            Self::Excluded(_) | Self::Refused(_) => None,
+        }
+    }
+}
+
+/// The columns of samples, with what became of each row where that is wanted.
+fn sample_columns(rows: &[Row<'_>], outcomes: bool) -> Vec<(String, ArrayRef)> {
+    let real = |of: fn(&cabin::Disturbances) -> f64| -> ArrayRef {
+        Arc::new(rows.iter().map(|r| r.sample().map(|s| of(&s.disturbances))).collect::<Float64Array>())
+    };
+    let of_segment = |r: &Row<'_>| match r {
+        Row::Sample(s) => Some((s.segment.mission.clone(), s.segment.bus, s.segment.segment, s.segment.start)),
+        Row::Excluded(e) => Some((e.mission.clone(), e.bus, e.segment, e.start)),
+        Row::Refused(_) => None,
+    };
+    let segments: Vec<_> = rows.iter().map(of_segment).collect();
+    let segment = || segments.iter().map(Option::as_ref);
+    let mut columns: Vec<(&str, ArrayRef)> = vec![
+        ("sample_id", Arc::new(segment().map(|s| s.map(|s| sample_id(s.1, s.3))).collect::<Int64Array>())),
+        ("mission", Arc::new(segment().map(|s| s.map(|s| s.0.as_str())).collect::<StringArray>())),
+        ("segment", Arc::new(segment().map(|s| s.map(|s| s.2 as i32)).collect::<Int32Array>())),
+        ("start_utc", Arc::new(segment().map(|s| s.map(|s| time(s.3))).collect::<StringArray>())),
+        ("month", Arc::new(rows.iter().map(|r| r.sample().map(|s| i32::from(s.month))).collect::<Int32Array>())),
+        ("ambient_temperature_k", real(|d| d.ambient_temperature_k)),
+        ("dni_w_m2", real(|d| d.dni_w_m2)),
+        ("dhi_w_m2", real(|d| d.dhi_w_m2)),
+        ("solar_altitude_rad", real(|d| d.solar_altitude_rad)),
+        ("shadow_fraction", real(|d| d.shadow_fraction)),
+        ("passengers", real(|d| d.passengers)),
+        ("door_open_fraction", real(|d| d.door_open_fraction)),
+    ];
+    if outcomes {
+        let told = |r: &Row<'_>| match r {
+            Row::Sample(_) => ("sample", None),
+            Row::Excluded(e) => ("excluded", Some(e.reason.clone())),
+            Row::Refused(reason) => ("refused", Some((*reason).to_owned())),
+        };
+        let told: Vec<(&str, Option<String>)> = rows.iter().map(told).collect();
+        columns.push(("outcome", Arc::new(StringArray::from_iter_values(told.iter().map(|t| t.0)))));
+        columns.push(("reason", Arc::new(told.iter().map(|t| t.1.as_deref()).collect::<StringArray>())));
+    }
+    columns.into_iter().map(|(name, values)| (name.to_owned(), values)).collect()
 }
 
 impl Study {

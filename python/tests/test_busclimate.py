@@ -1,7 +1,6 @@
 """The package as its users meet it: numbers of the program, data of other tools, errors that say what to do."""
 
 import math
-import os
 import subprocess
 import sys
 from pathlib import Path
@@ -12,25 +11,6 @@ import pyarrow as pa
 import pytest
 
 import busclimate as bc
-
-PROGRAM = os.environ.get("BUSCLIMATE_PROGRAM")
-
-
-@pytest.fixture(scope="session")
-def study(tmp_path_factory: pytest.TempPathFactory) -> bc.Study:
-    """A demo that the program has made, run by the package."""
-    if PROGRAM is None:
-        pytest.skip("BUSCLIMATE_PROGRAM names no program")
-    folder = tmp_path_factory.mktemp("demo")
-    subprocess.run([PROGRAM, "demo", folder, "--missions", "24", "--quiet"], check=True)
-    text = (folder / "study.toml").read_text()
-    text = text.replace("{ from = 0.0, to = 2.0, step = 0.125 }", "[0.5, 1.0]")
-    (folder / "study.toml").write_text(text.replace("pmv_limits = [0.0, 0.5, 1.0, 1.5, 2.0]", "pmv_limits = [1.0]"))
-    opened = bc.Study.open(folder)
-    headline = opened.run()
-    assert headline[0].startswith("Within PMV ±1")
-    return opened
-
 
 def one(**changes: float) -> pa.Table:
     """A cold hour."""
@@ -101,6 +81,13 @@ def test_designs_windows_and_constants_are_those_of_a_study_file() -> None:
     assert larger[0]["hvac_power_w"] > rows[1]["hvac_power_w"]
     hot = pa.table(bc.optimize(one(ambient_temperature_c=59.0, passengers=400), own, [0.25])).to_pylist()
     assert all((r["hvac_power_w"] is None) == (r["status"] != "solved") for r in hot)
+
+
+def test_a_table_without_rows_has_the_same_columns() -> None:
+    """Whoever asks for the schema gets it."""
+    hours = one().append_column("sample_id", pa.array([7]))
+    full, none = pa.table(bc.optimize(hours, windows=[1.0])), pa.table(bc.optimize(hours.slice(0, 0), windows=[1.0]))
+    assert none.schema == full.schema and none.num_rows == 0 and full["sample_id"].to_pylist() == [7] * 5
 
 
 def test_votes_are_those_of_the_standard() -> None:
