@@ -1,6 +1,7 @@
 //! The command line as it was typed.
 
 use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
+use pipeline::Shard;
 use std::path::PathBuf;
 
 /// More threads than any machine has cores only cost memory.
@@ -77,7 +78,27 @@ pub enum Command {
     /// Join segments with weather, sun and shade to hourly samples.
     Shade(StudyArgs),
     /// Find the optimal operation of every sample, design and comfort window that has none yet.
-    Solve(SolveArgs),
+    Solve {
+        #[command(flatten)]
+        solve: SolveArgs,
+        /// Solve a share of the samples only, the I-th of N from 1, into files of the folder that --to names; the database is only
+        /// read. `merge` takes them up.
+        #[arg(long, value_name = "I/N", value_parser = shard, requires = "to")]
+        shard: Option<Shard>,
+        /// Folder of the files, which all shares may write to at once.
+        #[arg(long, value_name = "DIR", requires = "shard")]
+        to: Option<PathBuf>,
+    },
+    /// Take up what shares have solved (`solve --shard`), and solve what none of them has.
+    Merge {
+        /// Study file, or the folder of one.
+        study: PathBuf,
+        /// Folder of the shares' files.
+        dir: PathBuf,
+        /// Where the experiment database lies, instead of where the study file says.
+        #[arg(long, value_name = "FILE")]
+        db: Option<PathBuf>,
+    },
     /// Simulate every mission second by second, beside what the steady-state optima foresee.
     Simulate(StudyArgs),
     /// Extract setpoints for a controller on board from the optima, drive every mission by them and by published ones, and write
@@ -164,6 +185,12 @@ pub enum Command {
     },
 }
 
+/// `I/N`.
+fn shard(text: &str) -> Result<Shard, String> {
+    let parts = text.split_once('/').and_then(|(index, of)| Shard::new(index.parse().ok()?, of.parse().ok()?));
+    parts.ok_or_else(|| "give I/N with I from 1 to N, such as 2/4".to_owned())
+}
+
 impl Command {
     /// Whether it looks at signals between its steps; the others are ended by them at once, and leave no file half written.
     pub fn can_stop(&self) -> bool {
@@ -172,7 +199,8 @@ impl Command {
             Self::Fetch(_)
                 | Self::Ingest(_)
                 | Self::Shade(_)
-                | Self::Solve(_)
+                | Self::Solve { .. }
+                | Self::Merge { .. }
                 | Self::Simulate(_)
                 | Self::Control(_)
                 | Self::Report { check: None, .. }

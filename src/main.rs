@@ -54,8 +54,9 @@ fn dispatch(args: &Args, console: &Console) -> Result<Ending, Failure> {
         console::stop_on_signal()?;
     }
     let wait = Duration::from_secs(args.wait);
+    let metrics = args.metrics.clone();
     let options =
-        &Options { rehash: args.rehash, forget_missing: args.forget_missing, wait, metrics: args.metrics.clone() };
+        &Options { rehash: args.rehash, forget_missing: args.forget_missing, wait, metrics, ..Options::default() };
     match &args.command {
         Command::Demo(demo) => {
             prepare::demo(demo, console)?;
@@ -87,8 +88,27 @@ fn dispatch(args: &Args, console: &Console) -> Result<Ending, Failure> {
         }
         Command::Ingest(study) => run(&open(study)?, &[Stage::Ingest], options, console),
         Command::Shade(study) => run(&open(study)?, &[Stage::Shade], options, console),
-        Command::Solve(solve) => {
-            run(&open(&solve.study)?.solved_by(solve.method.into()), &[Stage::Solve], options, console)
+        Command::Solve { solve, shard, to } => {
+            let study = open(&solve.study)?.solved_by(solve.method.into());
+            match shard.zip(to.as_ref()) {
+                None => run(&study, &[Stage::Solve], options, console),
+                Some((shard, folder)) => {
+                    let work = pipeline::solve_shard(&study, shard, folder, console)?;
+                    say(format_args!(
+                        "{} samples in {} files of {}, {} of them written now",
+                        work.samples,
+                        work.files,
+                        folder.display(),
+                        work.written
+                    ))?;
+                    Ok(Ending::Done)
+                }
+            }
+        }
+        Command::Merge { study, dir, db } => {
+            let study = open(&StudyArgs { study: Some(study.clone()), db: db.clone() })?;
+            let options = Options { shards: Some(dir.clone()), ..options.clone() };
+            run(&study, &[Stage::Solve], &options, console)
         }
         Command::Simulate(study) => run(&open(study)?, &[Stage::Simulate], options, console),
         Command::Control(control) => {

@@ -1,11 +1,13 @@
 //! The database as files for other tools: tables as Parquet and CSV, look-up tables for fleet planners, and the words that say
 //! what is what.
 
+mod chunk;
 mod lut;
 mod package;
 mod tables;
 mod words;
 
+pub use chunk::{ChunkRow, chunk_bytes, chunk_rows};
 pub use lut::{Loading, look_up_tables};
 pub use tables::tables;
 pub use words::{datasette, json, markdown, questions_markdown};

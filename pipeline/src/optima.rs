@@ -5,14 +5,21 @@ use ingest::sample::Sample;
 use solve::nlp::{DoorLaw, Effort, Surrogate, VoteForm, nlp_blocks};
 use solve::{Grid, Method, solve_blocks};
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
 use store::{MissingOptima, NewOptimum, RecordedStage, StageRecord, Store, StoredGrid};
 use study::Study;
 
 use crate::status::status_counts;
 use crate::{PipelineError, Progress, Work};
-use crate::{energy, freshness};
+use crate::{energy, freshness, shards};
 
-pub(crate) fn solve(study: &Study, store: &mut Store, progress: &dyn Progress) -> Result<Work, PipelineError> {
+/// Finds what is missing; with a folder of `shards`, what is in there is taken from it first.
+pub(crate) fn solve(
+    study: &Study,
+    store: &mut Store,
+    shards: Option<&Path>,
+    progress: &dyn Progress,
+) -> Result<Work, PipelineError> {
     let key = freshness::solve_key(study, store)?;
     let points = study.grid.points();
     if store.stage(RecordedStage::Solve)?.is_some_and(|record| record.key == key) {
@@ -21,8 +28,12 @@ pub(crate) fn solve(study: &Study, store: &mut Store, progress: &dyn Progress) -
     store.reopen_stage(RecordedStage::Solve)?;
     let grid = store.put_grid(&study.design_rows, study.grid.windows())?.grid;
     store.put_bus(&grid, &energy::bus(study))?;
-    let gaps = store.missing_optima(&grid)?;
     let stored: BTreeMap<i64, Sample> = store.samples()?.into_iter().map(|s| (s.id, s)).collect();
+    if let Some(folder) = shards {
+        let taken = shards::take(study, store, &grid, &stored, folder, progress)?;
+        progress.info(&format!("{taken} points taken from {}", folder.display()));
+    }
+    let gaps = store.missing_optima(&grid)?;
 
     let samples: usize = gaps.iter().map(|gap| gap.samples.len()).sum();
     progress.begin("samples", samples as u64);

@@ -1,6 +1,6 @@
 //! A run: stages in their order over one database, and its record.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use store::{Change, RunEnd, RunStage, SettingRow, Store};
 use study::settings::{Setting, settings};
@@ -57,6 +57,8 @@ pub struct Options {
     pub forget_missing: bool,
     /// How long to wait for another run on the same database.
     pub wait: Duration,
+    /// A folder of what processes that share the work have solved; it is taken up before the rest is computed.
+    pub shards: Option<PathBuf>,
     /// A file for what the run came to as metrics, in the text format of OpenMetrics.
     pub metrics: Option<PathBuf>,
 }
@@ -105,7 +107,8 @@ pub fn run(study: &Study, stages: &[Stage], options: &Options, progress: &dyn Pr
         store.put_study_text(&study.hash, &study.text)?;
     }
     let settings = if run_id.is_some() { settings(study) } else { Vec::new() };
-    let mut running = Running { study, stages, inputs, run_id, settings, headline: Vec::new() };
+    let shards = options.shards.as_deref();
+    let mut running = Running { study, stages, inputs, shards, run_id, settings, headline: Vec::new() };
     let outcome = stages.iter().try_for_each(|stage| running.stage(*stage, &mut store, progress));
     let summary = Summary::of(study, &mut store)?;
     let news = if outcome.is_ok() { news::news(study, &mut store, now())? } else { Vec::new() };
@@ -149,6 +152,8 @@ struct Running<'s> {
     study: &'s Study,
     stages: &'s [Stage],
     inputs: Inputs<'s>,
+    /// What others have solved.
+    shards: Option<&'s Path>,
     run_id: Option<i64>,
     /// All values of the study; none where nothing is recorded.
     settings: Vec<Setting>,
@@ -188,7 +193,7 @@ impl Running<'_> {
             Stage::Shade => samples::join(study, inputs, store),
             Stage::Solve => match freshness::samples(inputs, store)? {
                 Some(stale) => Err(stale.into()),
-                None => optima::solve(study, store, progress),
+                None => optima::solve(study, store, self.shards, progress),
             },
             Stage::Simulate => simulations::simulate(study, inputs, store, progress),
             Stage::Control => control::control(study, inputs, store, progress),
