@@ -17,7 +17,7 @@ use crate::files::{make_folder, write_whole};
 use crate::optima::vote_form;
 use crate::{PipelineError, Progress, open};
 
-/// Samples of a file: some 8 MB with five designs and seventeen windows.
+/// Samples of a file: some 0.7 MB with five designs and seventeen windows.
 const SAMPLES: usize = 512;
 const START: &str = "optima-";
 const END: &str = ".parquet";
