@@ -5,13 +5,15 @@ use arrow_array::{ArrayRef, Float64Array, Int32Array, Int64Array, StringArray};
 use ingest::ExcludedSegment;
 use ingest::sample::{Sample, sample_id};
 use pipeline::{Inputs, MissionReader, MissionSamples, Options, PipelineError, Progress, Stage};
+use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
 use pyo3_arrow::PyTable;
 use rayon::prelude::*;
+use std::ffi::CString;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 use store::{Relation, Store, Values, dictionary};
 
@@ -26,10 +28,11 @@ const PORTION: usize = 65_536;
 #[pyclass(frozen, module = "busclimate")]
 pub struct Study(::study::Study);
 
-/// Lets Ctrl-C end a run at its next safe place.
+/// Lets Ctrl-C end a run at its next safe place, and keeps what a user should look at.
 #[derive(Default)]
 struct Listening {
     interrupted: AtomicBool,
+    warnings: Mutex<Vec<String>>,
 }
 
 impl Progress for Listening {
@@ -37,7 +40,10 @@ impl Progress for Listening {
     fn advance(&self, _: u64) {}
     fn end(&self) {}
     fn info(&self, _: &str) {}
-    fn warn(&self, _: &str) {}
+    fn warn(&self, message: &str) {
+        // A thread that panicked while it added one leaves those before.
+        self.warnings.lock().unwrap_or_else(PoisonError::into_inner).push(message.to_owned());
+    }
     fn stop(&self) -> bool {
         if Python::attach(|py| py.check_signals()).is_err() {
             self.interrupted.store(true, Ordering::Relaxed);
@@ -81,7 +87,7 @@ impl Study {
     /// missing is computed. Gives the findings in a few lines where a report was made. `wait_s` is how long to wait for another
     /// run on the same database.
     ///
-    /// Raises InputError where inputs or database cannot be used, KeyboardInterrupt after Ctrl-C; a further run resumes.
+    /// Refused files and the like are UserWarnings. Raises InputError where inputs or database cannot be used, KeyboardInterrupt after Ctrl-C; a further run resumes.
     #[pyo3(signature = (stages=None, *, wait_s=0.0))]
     fn run(&self, py: Python<'_>, stages: Option<Vec<String>>, wait_s: f64) -> PyResult<Vec<String>> {
         let named = |name: &String| {
@@ -92,7 +98,12 @@ impl Study {
         let stages = stages.map_or_else(|| Ok(Stage::ALL.to_vec()), |names| names.iter().map(named).collect())?;
         let wait = Duration::try_from_secs_f64(wait_s).map_err(|e| argument("wait_s", e))?;
         let options = Options { wait, ..Options::default() };
-        let done = py.detach(|| pipeline::run(&self.0, &stages, &options, &Listening::default()));
+        let listening = Listening::default();
+        let done = py.detach(|| pipeline::run(&self.0, &stages, &options, &listening));
+        for message in listening.warnings.into_inner().unwrap_or_else(PoisonError::into_inner) {
+            let message = CString::new(message.replace('\0', " ")).unwrap_or_default();
+            PyErr::warn(py, &py.get_type::<PyUserWarning>(), &message, 1)?;
+        }
         match done {
             Ok(done) => Ok(done.headline),
             Err(PipelineError::Interrupted) => {

@@ -1,6 +1,7 @@
 """The package as its users meet it: numbers of the program, data of other tools, errors that say what to do."""
 
 import math
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -183,6 +184,15 @@ def test_annual_means_from_optima_are_those_of_the_program(study: bc.Study) -> N
     stored = pl.DataFrame(study.table("annual_average")).filter(pl.col("pmv_limit") == 1.0)
     for row in stored.join(means, on="design").iter_rows(named=True):
         assert math.isclose(row["mean"], row["hvac_power_w"], rel_tol=1e-12), row["design"]
+
+
+def test_refused_inputs_are_warnings(study: bc.Study, tmp_path: Path) -> None:
+    """Nothing is left out in silence."""
+    folder = tmp_path / "demo"
+    shutil.copytree(study.database.parent, folder)
+    (sorted((folder / "ztbus").glob("B*.csv"))[0]).write_text("this is no telemetry\n")
+    with pytest.warns(UserWarning, match="refused"):
+        bc.Study.open(folder).run(["ingest"])
 
 
 def test_words_say_arguments_and_units() -> None:
