@@ -127,7 +127,7 @@ pub(crate) fn drawn(figure: &HeatFlowFigure) -> Drawing {
     canvas.finished(y + 5.0, &figure.title, &figure.description)
 }
 
-/// What the diagram shows: what it is, how much, and of what unit; flows in the direction that is written.
+/// What the diagram shows: what it is, how much, and of what unit.
 pub(crate) fn values(figure: &HeatFlowFigure) -> Vec<(&'static str, f64, &'static str)> {
     let (t, f) = (&figure.temperatures, &figure.flows);
     let degrees = [
@@ -138,26 +138,8 @@ pub(crate) fn values(figure: &HeatFlowFigure) -> Vec<(&'static str, f64, &'stati
         ("shell outside", t.shell_outside_k),
         ("ambient", figure.ambient_k),
     ];
-    let watts = [
-        ("passengers to cabin air", f.passengers_w),
-        ("electronics to cabin air", f.other_w),
-        ("air unit to cabin air", f.air_unit_w),
-        ("cabin air to ambient, doors", f.door_w),
-        ("interior to cabin air", f.convection_interior_w),
-        ("interior to shell inside, radiation", f.radiation_interior_shell_w),
-        ("radiant heaters to cabin air", f.convection_radiant_heater_w),
-        ("radiant heaters to interior, radiation", f.radiation_heater_interior_w),
-        ("radiant heaters to shell inside, radiation", f.radiation_heater_shell_w),
-        ("cabin air to shell inside", f.convection_shell_inside_w),
-        ("shell inside to shell outside", f.conduction_shell_w),
-        ("shell outside to ambient", f.convection_shell_outside_w),
-        ("shell outside to surroundings, radiation", f.radiation_shell_outside_w),
-        ("sun on interior", f.solar.interior_w),
-        ("sun on shell inside", f.solar.shell_inside_w),
-        ("sun on shell outside", f.solar.shell_outside_w),
-        ("electric power of the radiant heaters", f.radiant_heater_power_w),
-        ("electric power of the air unit", figure.air_unit_power_w),
-    ];
+    let flows = f.named_w().map(|(_, what, watt)| (what, watt));
+    let watts = flows.into_iter().chain([("electric power of the air unit", figure.air_unit_power_w)]);
     let degrees = degrees.map(|(what, kelvin)| (what, celsius(kelvin), "°C"));
     degrees.into_iter().chain(watts.map(|(what, watt)| (what, watt, "W"))).collect()
 }
