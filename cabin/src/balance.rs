@@ -198,7 +198,7 @@ impl<'a> Cabin<'a> {
     }
 
     #[inline(always)]
-    fn door_conductance_w_k<R: Real>(&self, cabin_k: R, door_loss_share: R) -> R {
+    pub(crate) fn door_conductance_w_k<R: Real>(&self, cabin_k: R, door_loss_share: R) -> R {
         door_loss_share * self.door * (cabin_k - self.ambient_k).abs().sqrt()
     }
 

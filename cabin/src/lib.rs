@@ -9,6 +9,7 @@
 //! [`ComfortWindow`], the [`Operation`] that is found for them, and the [`Outcome`] of looking for one.
 
 mod balance;
+mod changes;
 mod clothing;
 mod comfort;
 mod cop;

@@ -63,9 +63,16 @@ impl SimulationBasis<'_> {
 /// The optima of a mission's segments by design and window, or which segment has none.
 type MissionOptima = BTreeMap<(usize, usize), Result<Vec<Operation>, String>>;
 
-pub(crate) fn optima(store: &mut Store, grid: &StoredGrid, samples: &[Sample]) -> Result<MissionOptima, PipelineError> {
+/// The optima of a mission in some designs and windows, by their places.
+pub(crate) fn optima(
+    store: &mut Store,
+    grid: &StoredGrid,
+    samples: &[Sample],
+    designs: &[usize],
+    windows: &[usize],
+) -> Result<MissionOptima, PipelineError> {
     // Ids of a mission's samples rise with time; those of other buses lie elsewhere.
-    let rows = store.optima(grid, samples[0].id, samples[samples.len() - 1].id)?;
+    let rows = store.optima_of(grid, [samples[0].id, samples[samples.len() - 1].id], designs, windows)?;
     let mut found: BTreeMap<(usize, usize), BTreeMap<i64, Outcome>> = BTreeMap::new();
     for row in &rows {
         if let Some(outcome) = row.outcome {
@@ -73,8 +80,8 @@ pub(crate) fn optima(store: &mut Store, grid: &StoredGrid, samples: &[Sample]) -
         }
     }
     let mut optima = BTreeMap::new();
-    for design in 0..grid.designs.len() {
-        for window in 0..grid.windows.len() {
+    for &design in designs {
+        for &window in windows {
             let outcomes = found.remove(&(design, window)).unwrap_or_default();
             let operation = |s: &Sample| match outcomes.get(&s.id) {
                 Some(Outcome::Solved(operation, _)) => Ok(*operation),

@@ -33,6 +33,12 @@ pub(crate) fn span(samples: &[Sample]) -> (DateTime<Utc>, DateTime<Utc>) {
     (first.start, last.start + TimeDelta::seconds(i64::from(last.duration_s)))
 }
 
+/// The loads of a mission from the start of its first sample on; what happened before holds there.
+pub(crate) fn from_first(loads: &[LoadChange], first: &ingest::mission::Segment) -> Vec<LoadChange> {
+    let offset_s = first.segment * first.duration_s;
+    loads.iter().map(|l| LoadChange { second: l.second.saturating_sub(offset_s), ..*l }).collect()
+}
+
 /// A mission's loads and weather in time.
 pub(crate) struct MissionInTime<'v> {
     loads: Vec<LoadChange>,
@@ -54,13 +60,12 @@ impl<'v> MissionInTime<'v> {
     ) -> Result<Self, String> {
         let first = &samples[0].segment;
         let segment_s = first.duration_s;
-        let offset_s = first.segment * segment_s;
-        // What happened before the first sample holds at its start.
-        let shifted = |l: &LoadChange| LoadChange { second: l.second.saturating_sub(offset_s), ..*l };
+        let minutes = inputs.minutes(study, first.start, segment_s * samples.len() as u32)?;
+        let cabin = |d: &Disturbances| Cabin::new(&study.vehicle, views, d);
         Ok(Self {
-            loads: loads.iter().map(shifted).collect(),
-            minutes: inputs.minutes(study, views, first.start, segment_s * samples.len() as u32)?,
-            segments: samples.iter().map(|s| Cabin::new(&study.vehicle, views, &s.disturbances)).collect(),
+            loads: from_first(loads, first),
+            minutes: minutes.iter().map(cabin).collect(),
+            segments: samples.iter().map(|s| cabin(&s.disturbances)).collect(),
             segment_s,
             door_open_share: study.missions.door_open_share,
         })
@@ -100,19 +105,13 @@ impl<'i> WeatherAndShade<'i> {
         format!("{} {}", self.weather.key(start, end, 1), self.shadow.key(start, end))
     }
 
-    /// The cabin under the weather of the middle of each minute.
-    fn minutes<'v>(
-        &self,
-        study: &'v Study,
-        views: &'v PassengerViews,
-        start: DateTime<Utc>,
-        seconds: u32,
-    ) -> Result<Vec<Cabin<'v>>, String> {
+    /// Weather and shade in the middle of each minute, with nobody on board and doors shut.
+    pub fn minutes(&self, study: &Study, start: DateTime<Utc>, seconds: u32) -> Result<Vec<Disturbances>, String> {
         (0..seconds.div_ceil(60))
             .map(|minute| {
                 let at = start + TimeDelta::seconds(60 * i64::from(minute) + 30);
                 let here = self.weather.at(at).map_err(|reason| format!("minute {minute}: {reason}"))?;
-                let d = Disturbances {
+                Ok(Disturbances {
                     ambient_temperature_k: here.ambient_temperature_k.clamp(kelvin(-70.0), kelvin(60.0)),
                     dni_w_m2: here.dni_w_m2,
                     dhi_w_m2: here.dhi_w_m2,
@@ -120,8 +119,7 @@ impl<'i> WeatherAndShade<'i> {
                     shadow_fraction: self.shadow.at(at),
                     passengers: 0.0,
                     door_open_fraction: 0.0,
-                };
-                Ok(Cabin::new(&study.vehicle, views, &d))
+                })
             })
             .collect()
     }

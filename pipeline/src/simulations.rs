@@ -4,6 +4,7 @@ use cabin::{Operation, PassengerViews};
 use ingest::sample::Sample;
 use rayon::prelude::*;
 use simulate::{LANES, Replay, Segment, Summary, Variant};
+use std::collections::BTreeSet;
 use store::{Driven, RecordedStage, SimulationId, SimulationRow, StageRecord, Store};
 use study::Study;
 
@@ -130,7 +131,9 @@ impl SimulationBasis<'_> {
         if open.is_empty() {
             return Ok(None);
         }
-        let optima = optima(store, &self.grid, samples)?;
+        let designs: BTreeSet<usize> = open.iter().map(|(id, _)| id.design).collect();
+        let designs: Vec<usize> = designs.into_iter().collect();
+        let optima = optima(store, &self.grid, samples, &designs, &self.study.simulated_windows)?;
         let point = |(id, key): (SimulationId, String)| {
             let optima = optima[&(id.design, id.window)].clone();
             Point { id, key, optima }

@@ -59,7 +59,8 @@ fn row(
     let Ok(in_time) = MissionInTime::new(study, &basis.views, &basis.surroundings, samples, &loads) else {
         return Ok(None);
     };
-    let Ok(optima) = optima(store, &basis.grid, samples)?[&(id.design, id.window)].clone() else { return Ok(None) };
+    let mut of_point = optima(store, &basis.grid, samples, &[id.design], &[id.window])?;
+    let Some(Ok(optima)) = of_point.remove(&(id.design, id.window)) else { return Ok(None) };
     let segments = in_time.segments(&optima, study.grid.windows()[id.window]);
     let mission = in_time.mission();
     let mut trace = Trace::default();

@@ -13,8 +13,10 @@ from ._busclimate import (
     __version__,
     model_key,
     optimize,
+    parameter_study,
     pmv,
     read_mission,
+    simulate,
 )
 
 __all__ = [
@@ -26,6 +28,8 @@ __all__ = [
     "__version__",
     "model_key",
     "optimize",
+    "parameter_study",
     "pmv",
     "read_mission",
+    "simulate",
 ]

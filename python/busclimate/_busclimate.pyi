@@ -69,6 +69,7 @@ class Study:
     def run(self, stages: Sequence[str] | None = None, *, wait_s: float = 0.0) -> list[str]: ...
     def table(self, name: str) -> Table: ...
     def samples(self) -> Table: ...
+    def mission(self, name: str) -> dict[str, Any]: ...
     def read_missions(self, paths: Sequence[str | PathLike[str]]) -> Table: ...
     def reading_key(self) -> str: ...
 
@@ -79,6 +80,14 @@ def model_key(
     vehicle: Mapping[str, Any] | None = None,
 ) -> str: ...
 def optimize(
+    samples: ArrowStream | ArrowBatch,
+    designs: Mapping[str, Mapping[str, Any]] | None = None,
+    windows: Sequence[float] | Sequence[Sequence[float]] | None = None,
+    *,
+    vehicle: Mapping[str, Any] | None = None,
+) -> Table: ...
+def parameter_study(
+    sets: ArrowStream | ArrowBatch,
     samples: ArrowStream | ArrowBatch,
     designs: Mapping[str, Mapping[str, Any]] | None = None,
     windows: Sequence[float] | Sequence[Sequence[float]] | None = None,
@@ -100,4 +109,16 @@ def read_mission(
     segment_s: int = 3600,
     door_open_share: float = 0.6,
     keep_partial: bool = False,
+) -> Table: ...
+def simulate(
+    samples: ArrowStream | ArrowBatch,
+    minutes: ArrowStream | ArrowBatch,
+    loads: ArrowStream | ArrowBatch,
+    designs: Mapping[str, Mapping[str, Any]] | None = None,
+    windows: Sequence[float] | Sequence[Sequence[float]] | None = None,
+    *,
+    segment_s: int = 3600,
+    door_open_share: float = 0.6,
+    vehicle: Mapping[str, Any] | None = None,
+    dynamics: Mapping[str, Any] | None = None,
 ) -> Table: ...

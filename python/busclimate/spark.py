@@ -9,6 +9,7 @@ never a failed task; a worker with another version of busclimate is an error tha
     optima = busclimate.spark.optimize(samples.where("outcome = 'sample'"), windows=[0.5, 1.0])
     optima.write.partitionBy("design").parquet("/shared/optima")
     means = busclimate.spark.annual_means(optima, samples)
+    years = busclimate.spark.parameter_study(sets, study_samples, windows=[1.0])
 """
 
 from __future__ import annotations
@@ -80,6 +81,19 @@ class _Optimize:
                 yield from found.drop_columns("sample").to_batches()
 
 
+class _Parameters:
+    """What a task does with sets of constants."""
+
+    def __init__(self, samples: bytes, designs: Any, windows: Any, vehicle: Any, key: str) -> None:
+        self.samples, self.designs, self.windows, self.vehicle, self.key = samples, designs, windows, vehicle, key
+
+    def __call__(self, batches: Iterable[pa.RecordBatch]) -> Iterator[pa.RecordBatch]:
+        _same("model key", self.key, busclimate.model_key(self.designs, self.windows, vehicle=self.vehicle))
+        samples = pa.ipc.open_stream(self.samples).read_all()
+        for batch in batches:
+            yield from _batches(busclimate.parameter_study(batch, samples, self.designs, self.windows, vehicle=self.vehicle))
+
+
 def read_missions(missions: DataFrame, study: str) -> DataFrame:
     """The samples of mission files: a row for each sample, excluded segment and refused file.
 
@@ -113,6 +127,32 @@ def optimize(
 
     task = _Optimize(designs, windows, vehicle, key)
     return samples.select(*needed).mapInArrow(task, from_arrow_schema(found.schema))
+
+
+def parameter_study(
+    sets: DataFrame,
+    samples: pa.Table | busclimate.Table,
+    designs: Mapping[str, Mapping[str, Any]] | None = None,
+    windows: Sequence[float] | Sequence[Sequence[float]] | None = None,
+    *,
+    vehicle: Mapping[str, Any] | None = None,
+) -> DataFrame:
+    """Annual means of buses with other constants: `busclimate.parameter_study` on every partition.
+
+    `sets` has `set_id` and a column for each constant that varies. `samples` go to every task whole (a bus has some hundred kilobytes
+    a year), so that a set is added up where it is solved, and no partition shows in the result. Of a billion points nothing else is
+    kept.
+    """
+    table = pa.table(samples)
+    stream = pa.BufferOutputStream()
+    with pa.ipc.new_stream(stream, table.schema) as writer:
+        writer.write_table(table)
+    key = busclimate.model_key(designs, windows, vehicle=vehicle)
+    # No set tells the columns.
+    none = pa.table({"set_id": pa.array([], pa.int64())})
+    found = busclimate.parameter_study(none, table.slice(0, 0), designs, windows, vehicle=vehicle)
+    task = _Parameters(stream.getvalue().to_pybytes(), designs, windows, vehicle, key)
+    return sets.mapInArrow(task, _schema(found))
 
 
 def _sum(group: pa.Table) -> pa.Table:

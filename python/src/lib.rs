@@ -9,7 +9,10 @@ mod comfort;
 mod errors;
 mod missions;
 mod optimize;
+mod parameters;
+mod samples;
 mod settings;
+mod simulate;
 mod study;
 
 use pyo3::prelude::*;
@@ -27,5 +30,7 @@ fn _busclimate(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(missions::read_mission, module)?)?;
     module.add_function(wrap_pyfunction!(optimize::model_key, module)?)?;
     module.add_function(wrap_pyfunction!(optimize::optimize, module)?)?;
+    module.add_function(wrap_pyfunction!(parameters::parameter_study, module)?)?;
+    module.add_function(wrap_pyfunction!(simulate::simulate, module)?)?;
     Ok(())
 }

@@ -4,7 +4,7 @@ use ::study::keys;
 use arrow_array::{ArrayRef, BooleanArray, Float64Array, Int8Array, Int64Array, RecordBatch, StringArray};
 use arrow_cast::cast;
 use arrow_schema::DataType;
-use cabin::{Disturbances, Operation, Optimum, celsius, kelvin};
+use cabin::{Disturbances, Operation, Optimum, celsius};
 use pyo3::prelude::*;
 use pyo3::types::PyAny;
 use pyo3_arrow::PyTable;
@@ -12,8 +12,9 @@ use pyo3_arrow::input::AnyRecordBatch;
 use solve::{Grid, solve_blocks};
 use std::sync::Arc;
 
-use crate::arrow::{numbers, table};
+use crate::arrow::table;
 use crate::errors::data;
+use crate::samples::disturbances;
 use crate::settings::study;
 
 const ARGUMENT: &str = "samples";
@@ -61,7 +62,7 @@ pub fn optimize(
     windows: Option<&Bound<'_, PyAny>>,
     vehicle: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<PyTable> {
-    let study = study(designs, windows, vehicle)?;
+    let study = study(designs, windows, &[("vehicle", vehicle)])?;
     let (batches, schema) = samples.into_table()?.into_inner();
     py.detach(|| {
         let mut rows = Rows { has_ids: schema.column_with_name("sample_id").is_some(), ..Rows::default() };
@@ -87,7 +88,7 @@ pub fn model_key(
     windows: Option<&Bound<'_, PyAny>>,
     vehicle: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<String> {
-    let study = study(designs, windows, vehicle)?;
+    let study = study(designs, windows, &[("vehicle", vehicle)])?;
     let windows = study.grid.windows().iter().map(|w| format!("{} {}", w.pmv_min(), w.pmv_max()));
     let parts: Vec<String> = study.design_rows.iter().map(|row| row.design_key.clone()).chain(windows).collect();
     Ok(keys::hash(&parts.iter().map(String::as_str).collect::<Vec<_>>()))
@@ -95,43 +96,7 @@ pub fn model_key(
 
 impl Samples {
     fn of(batch: &RecordBatch, before: usize) -> PyResult<Self> {
-        let column = |name: &str| {
-            let missing = || {
-                data(
-                    ARGUMENT,
-                    format!(
-                        "column {name} is missing; it needs ambient_temperature_k or _c, dni_w_m2, \
-                dhi_w_m2, solar_altitude_rad or _deg, shadow_fraction, passengers, door_open_fraction"
-                    ),
-                )
-            };
-            numbers(ARGUMENT, batch, name)?.ok_or_else(missing)
-        };
-        // Either unit; that of the model has its own bits.
-        let either = |model: &str, other: &str, convert: fn(f64) -> f64| match numbers(ARGUMENT, batch, model)? {
-            Some(values) => Ok(values),
-            None => {
-                column(other).map(|values| Float64Array::from_iter_values(values.values().iter().map(|v| convert(*v))))
-            }
-        };
-        let ambient_k = either("ambient_temperature_k", "ambient_temperature_c", kelvin)?;
-        let altitude_rad = either("solar_altitude_rad", "solar_altitude_deg", f64::to_radians)?;
-        let [dni, dhi, shadow, passengers, doors] =
-            ["dni_w_m2", "dhi_w_m2", "shadow_fraction", "passengers", "door_open_fraction"].map(column);
-        let (dni, dhi, shadow, passengers, doors) = (dni?, dhi?, shadow?, passengers?, doors?);
-        let of = |i: usize| Disturbances {
-            ambient_temperature_k: ambient_k.value(i),
-            dni_w_m2: dni.value(i),
-            dhi_w_m2: dhi.value(i),
-            solar_altitude_rad: altitude_rad.value(i),
-            shadow_fraction: shadow.value(i),
-            passengers: passengers.value(i),
-            door_open_fraction: doors.value(i),
-        };
-        let disturbances: Vec<Disturbances> = (0..batch.num_rows()).map(of).collect();
-        for (i, d) in disturbances.iter().enumerate() {
-            d.check().map_err(|e| data(ARGUMENT, format!("row {}: {e}", before + i)))?;
-        }
+        let disturbances = disturbances(ARGUMENT, batch, before, true)?;
         let ids = batch.column_by_name("sample_id").map(|ids| {
             let ids = cast(ids, &DataType::Int64).map_err(|e| data(ARGUMENT, format!("column sample_id: {e}")))?;
             ids.as_any()

@@ -9,18 +9,27 @@ use toml::{Table, Value};
 
 use crate::errors::{StudyError, argument};
 
-/// The study of what is given; all else is that of a new study file.
+/// The study of what is given; all else is that of a new study file. `constants` are its tables of numbers, such as `vehicle`.
 pub fn study(
     designs: Option<&Bound<'_, PyAny>>,
     windows: Option<&Bound<'_, PyAny>>,
-    vehicle: Option<&Bound<'_, PyAny>>,
+    constants: &[(&str, Option<&Bound<'_, PyAny>>)],
 ) -> PyResult<Study> {
+    parse(&file(designs, windows, constants)?)
+}
+
+/// The study file of what is given.
+pub fn file(
+    designs: Option<&Bound<'_, PyAny>>,
+    windows: Option<&Bound<'_, PyAny>>,
+    constants: &[(&str, Option<&Bound<'_, PyAny>>)],
+) -> PyResult<Table> {
     let new = render(&Template { name: "arguments", note: None, buses: &[], weather: WeatherKeys::MeteoSwissOgd });
     let mut file: Table = new.parse().map_err(|e| argument("designs", e))?;
-    for (key, given) in [("designs", designs), ("vehicle", vehicle)] {
+    for (key, given) in [("designs", designs)].iter().chain(constants) {
         if let Some(given) = given {
             let given = given.cast::<PyDict>().map_err(|_| argument(key, "give a dict, as in a study file"))?;
-            file.insert(key.to_owned(), value(key, given)?);
+            file.insert((*key).to_owned(), value(key, given)?);
         }
     }
     if let Some(windows) = windows {
@@ -34,7 +43,12 @@ pub fn study(
         let key = if list.iter().any(Value::is_array) { "windows" } else { "pmv_limits" };
         file.insert("comfort".to_owned(), Value::Table(Table::from_iter([(key.to_owned(), given.clone())])));
     }
-    let text = toml::to_string(&file).map_err(|e| argument("designs", e))?;
+    Ok(file)
+}
+
+/// The study of a file.
+pub fn parse(file: &Table) -> PyResult<Study> {
+    let text = toml::to_string(file).map_err(|e| argument("designs", e))?;
     Study::parse(&text, Path::new("arguments")).map_err(|e| StudyError::new_err(e.to_string()))
 }
 

@@ -2,11 +2,13 @@
 
 use ::study::keys;
 use arrow_array::{ArrayRef, Float64Array, Int32Array, Int64Array, StringArray};
+use cabin::Disturbances;
 use ingest::ExcludedSegment;
 use ingest::sample::{Sample, sample_id};
 use pipeline::{Inputs, MissionReader, MissionSamples, Options, PipelineError, Progress, Stage};
 use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use pyo3_arrow::PyTable;
 use rayon::prelude::*;
 use std::ffi::CString;
@@ -18,7 +20,7 @@ use std::time::Duration;
 use store::{Relation, Store, Values, dictionary};
 
 use crate::arrow::{batch, table};
-use crate::errors::{InputError, StudyError, argument};
+use crate::errors::{InputError, StudyError, argument, data};
 use crate::missions::time;
 
 /// Rows that are read from the database at a time.
@@ -138,6 +140,35 @@ impl Study {
         table(sample_columns(&rows, false))
     }
 
+    /// A mission of the study by its name, as what `busclimate.simulate` takes: `simulate(**study.mission(name))` gives the rows of
+    /// the view `simulation`, bit for bit, with the designs, windows and constants that it is given.
+    ///
+    /// Raises InputError where there is no such mission, or weather or shade cannot be used.
+    fn mission<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyDict>> {
+        let found =
+            py.detach(|| pipeline::mission_inputs(&self.0, name)).map_err(|e| InputError::new_err(e.to_string()))?;
+        let found = found.ok_or_else(|| {
+            data("name", format!("there is no mission {name:?} with samples; the view sample has the names"))
+        })?;
+        let ids = |ids: &[i64]| -> ArrayRef { Arc::new(Int64Array::from(ids.to_vec())) };
+        let mut samples = vec![("sample_id".to_owned(), ids(&found.samples))];
+        samples.extend(disturbance_columns(found.segments.iter().map(Some)));
+        let loads: Vec<(String, ArrayRef)> = [
+            ("second", ids(&found.loads.iter().map(|l| i64::from(l.second)).collect::<Vec<_>>())),
+            ("passengers", Arc::new(Float64Array::from_iter_values(found.loads.iter().map(|l| l.passengers)))),
+            ("door_open", Arc::new(Float64Array::from_iter_values(found.loads.iter().map(|l| l.door_open)))),
+        ]
+        .map(|(name, values)| (name.to_owned(), values))
+        .into();
+        let arguments = PyDict::new(py);
+        arguments.set_item("samples", table(samples)?)?;
+        arguments.set_item("minutes", table(disturbance_columns(found.minutes.iter().map(Some)))?)?;
+        arguments.set_item("loads", table(loads)?)?;
+        arguments.set_item("segment_s", found.segment_s)?;
+        arguments.set_item("door_open_share", self.0.missions.door_open_share)?;
+        Ok(arguments)
+    }
+
     /// The samples of mission files, read and joined with the study's weather and shade by the code of `ingest` and `shade`,
     /// without a database: what a cluster maps over. Each file stands for itself: those that overlap are not looked for.
     ///
@@ -195,9 +226,6 @@ impl Row<'_> {
 
 /// The columns of samples, with what became of each row where that is wanted.
 fn sample_columns(rows: &[Row<'_>], outcomes: bool) -> Vec<(String, ArrayRef)> {
-    let real = |of: fn(&cabin::Disturbances) -> f64| -> ArrayRef {
-        Arc::new(rows.iter().map(|r| r.sample().map(|s| of(&s.disturbances))).collect::<Float64Array>())
-    };
     let of_segment = |r: &Row<'_>| match r {
         Row::Sample(s) => Some((s.segment.mission.clone(), s.segment.bus, s.segment.segment, s.segment.start)),
         Row::Excluded(e) => Some((e.mission.clone(), e.bus, e.segment, e.start)),
@@ -205,20 +233,16 @@ fn sample_columns(rows: &[Row<'_>], outcomes: bool) -> Vec<(String, ArrayRef)> {
     };
     let segments: Vec<_> = rows.iter().map(of_segment).collect();
     let segment = || segments.iter().map(Option::as_ref);
-    let mut columns: Vec<(&str, ArrayRef)> = vec![
+    let columns: Vec<(&str, ArrayRef)> = vec![
         ("sample_id", Arc::new(segment().map(|s| s.map(|s| sample_id(s.1, s.3))).collect::<Int64Array>())),
         ("mission", Arc::new(segment().map(|s| s.map(|s| s.0.as_str())).collect::<StringArray>())),
         ("segment", Arc::new(segment().map(|s| s.map(|s| s.2 as i32)).collect::<Int32Array>())),
         ("start_utc", Arc::new(segment().map(|s| s.map(|s| time(s.3))).collect::<StringArray>())),
         ("month", Arc::new(rows.iter().map(|r| r.sample().map(|s| i32::from(s.month))).collect::<Int32Array>())),
-        ("ambient_temperature_k", real(|d| d.ambient_temperature_k)),
-        ("dni_w_m2", real(|d| d.dni_w_m2)),
-        ("dhi_w_m2", real(|d| d.dhi_w_m2)),
-        ("solar_altitude_rad", real(|d| d.solar_altitude_rad)),
-        ("shadow_fraction", real(|d| d.shadow_fraction)),
-        ("passengers", real(|d| d.passengers)),
-        ("door_open_fraction", real(|d| d.door_open_fraction)),
     ];
+    let mut columns: Vec<(String, ArrayRef)> =
+        columns.into_iter().map(|(name, values)| (name.to_owned(), values)).collect();
+    columns.extend(disturbance_columns(rows.iter().map(|r| r.sample().map(|s| &s.disturbances))));
     if outcomes {
         let told = |r: &Row<'_>| match r {
             Row::Sample(_) => ("sample", None),
@@ -226,10 +250,28 @@ fn sample_columns(rows: &[Row<'_>], outcomes: bool) -> Vec<(String, ArrayRef)> {
             Row::Refused(reason) => ("refused", Some((*reason).to_owned())),
         };
         let told: Vec<(&str, Option<String>)> = rows.iter().map(told).collect();
-        columns.push(("outcome", Arc::new(StringArray::from_iter_values(told.iter().map(|t| t.0)))));
-        columns.push(("reason", Arc::new(told.iter().map(|t| t.1.as_deref()).collect::<StringArray>())));
+        columns.push(("outcome".to_owned(), Arc::new(StringArray::from_iter_values(told.iter().map(|t| t.0)))));
+        columns.push(("reason".to_owned(), Arc::new(told.iter().map(|t| t.1.as_deref()).collect::<StringArray>())));
     }
-    columns.into_iter().map(|(name, values)| (name.to_owned(), values)).collect()
+    columns
+}
+
+/// Disturbances in the units of the model.
+fn disturbance_columns<'d>(rows: impl Iterator<Item = Option<&'d Disturbances>> + Clone) -> Vec<(String, ArrayRef)> {
+    let real = |of: fn(&Disturbances) -> f64| -> ArrayRef {
+        Arc::new(rows.clone().map(|d| d.map(of)).collect::<Float64Array>())
+    };
+    [
+        ("ambient_temperature_k", real(|d| d.ambient_temperature_k)),
+        ("dni_w_m2", real(|d| d.dni_w_m2)),
+        ("dhi_w_m2", real(|d| d.dhi_w_m2)),
+        ("solar_altitude_rad", real(|d| d.solar_altitude_rad)),
+        ("shadow_fraction", real(|d| d.shadow_fraction)),
+        ("passengers", real(|d| d.passengers)),
+        ("door_open_fraction", real(|d| d.door_open_fraction)),
+    ]
+    .map(|(name, values)| (name.to_owned(), values))
+    .into()
 }
 
 impl Study {

@@ -52,6 +52,64 @@ def test_missions_are_read_as_the_program_reads_them(study: bc.Study) -> None:
         assert pair[f"{name}_found"].equals(pair[name], null_equal=True), name
 
 
+def test_simulations_are_those_of_the_program_bit_for_bit(study: bc.Study) -> None:
+    """`simulate` on a mission of the study gives its rows of the view `simulation`."""
+    stored = pl.DataFrame(study.table("simulation"))
+    missions = stored["mission"].unique().sort()
+    for name in [missions[0], missions[-1]]:
+        inputs = study.mission(name)
+        found = pl.DataFrame(bc.simulate(**inputs, windows=[1.0]))
+        keys = ["design", "pmv_limit", "controller"]
+        pair = stored.filter(pl.col("mission") == name).join(found, on=keys, suffix="_found")
+        assert pair.height == found.height == 20 and set(found["status"]) == {"simulated"}
+        for column in [
+            "mean_hvac_power_w",
+            "static_mean_hvac_power_w",
+            "max_abs_pmv_15min",
+            "static_max_abs_pmv",
+            "saturated_fraction",
+            "tracking_error_k",
+            "seconds",
+        ]:
+            assert pair[f"{column}_found"].equals(pair[column], null_equal=True), column
+    slow = pl.DataFrame(bc.simulate(**inputs, windows=[1.0], dynamics={"air_unit_time_constant_s": 200.0}))
+    assert not slow["mean_hvac_power_w"].equals(found["mean_hvac_power_w"])
+    with pytest.raises(bc.InputError, match="minutes: there are"):
+        bc.simulate(**(inputs | {"minutes": pa.table(inputs["minutes"]).slice(0, 59)}))
+    with pytest.raises(bc.InputError, match="loads: row 1: .*second is whole and rises"):
+        loads = pa.table({"second": [5, 5], "passengers": [1.0, 2.0], "door_open": [0.0, 1.0]})
+        bc.simulate(**(inputs | {"loads": loads}))
+    with pytest.raises(bc.InputError, match="there is no mission"):
+        study.mission("B1")
+
+
+def test_a_parameter_study_gives_the_years_of_the_program(study: bc.Study) -> None:
+    """The set that changes nothing has the annual means of the study; a set depends on itself alone."""
+    samples = study.samples()
+    sets = pa.table({"set_id": [7, 8], "conduction_shell_w_m2_k": [6.86, 2.0]})
+    base = pl.DataFrame(bc.parameter_study(pa.table({"set_id": [1]}), samples, windows=[0.5, 1.0]))
+    stored = pl.DataFrame(study.table("annual_average"))
+    pair = stored.join(base, on=["design", "pmv_limit"], suffix="_found")
+    assert pair.height == base.height == 10
+    for name in ["hvac_power_w", "heating_power_w", "cooling_power_w"]:
+        assert ((pair[name] - pair[f"{name}_found"]).abs() <= 1e-12 * pair["hvac_power_w"]).all(), name
+    assert pair["sample_count"].equals(pair["sample_count_found"])
+    found = pl.DataFrame(bc.parameter_study(sets, samples, windows=[0.5, 1.0]))
+    alone = pl.DataFrame(bc.parameter_study(sets.slice(1), samples, windows=[0.5, 1.0]))
+    assert found.filter(pl.col("set_id") == 8).equals(alone)
+    assert found.filter(pl.col("set_id") == 7).drop("set_id").equals(base.drop("set_id"))
+    elsewhere = pl.DataFrame(bc.parameter_study(pa.table({"set_id": [8]}), samples, windows=[0.5, 1.0], vehicle={"conduction_shell_w_m2_k": 2.0}))
+    assert elsewhere.equals(alone)
+    better = found.filter(pl.col("set_id") == 8)["heating_power_w"] < found.filter(pl.col("set_id") == 7)["heating_power_w"]
+    assert better.all()
+    with pytest.raises(bc.InputError, match="samples: column month is missing"):
+        bc.parameter_study(sets, one())
+    with pytest.raises(bc.StudyError, match="sets: shell_aera_m2 is no constant of the bus; there are .*shell_area_m2"):
+        bc.parameter_study(pa.table({"set_id": [1], "shell_aera_m2": [3.0]}), samples)
+    wrong = pl.DataFrame(bc.parameter_study(pa.table({"set_id": [1], "shell_area_m2": [-3.0]}), samples, windows=[1.0]))
+    assert wrong["status"].str.contains("shell_area_m2").all() and wrong["hvac_power_w"].is_null().all()
+
+
 def test_tables_are_those_of_the_dictionary(study: bc.Study) -> None:
     """Every tool takes a table without more."""
     table = study.table("annual_average")

@@ -151,6 +151,22 @@ def test_what_cannot_be_used_is_a_row(spark: SparkSession, large: bc.Study, tmp_
     assert len(found) == 5 and all((row["hvac_power_w"] is None) == (row["status"] != "solved") for row in found)
 
 
+def test_a_parameter_study_keeps_the_years_alone(spark: SparkSession, large: bc.Study) -> None:
+    """The same years whatever the partitions, as without Spark; a set that cannot be is rows with a reason."""
+    samples = pa.table(large.samples())
+    areas = [100.0 + 0.5 * n for n in range(40)] + [-1.0]
+    sets = pa.table({"set_id": list(range(len(areas))), "shell_area_m2": areas})
+    here = pa.table(bc.parameter_study(sets, samples, windows=WINDOWS))
+    assert here.num_rows == len(areas) * 10
+    for partitions in [3, 8]:
+        rows = spark.createDataFrame(sets).repartition(partitions)
+        there = bc.spark.parameter_study(rows, samples, windows=WINDOWS).toArrow()
+        keys = ["set_id", "design", "pmv_limit"]
+        assert equal(there, here, keys) == here.num_columns
+    refused = here.filter(pa.compute.equal(here["set_id"], len(areas) - 1)).to_pylist()
+    assert all(row["hvac_power_w"] is None and "shell_area_m2" in row["status"] for row in refused)
+
+
 def test_a_worker_with_another_version_is_refused(large: bc.Study) -> None:
     """By its key, with words."""
     task = bc.spark._Optimize(None, WINDOWS, None, "0" * 64)

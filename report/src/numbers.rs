@@ -134,21 +134,7 @@ pub(crate) fn signed_percent(part: f64, whole: f64) -> String {
 
 /// A name of a month.
 pub(crate) fn month(month: u8) -> &'static str {
-    const NAMES: [&str; 12] = [
-        "January",
-        "February",
-        "March",
-        "April",
-        "May",
-        "June",
-        "July",
-        "August",
-        "September",
-        "October",
-        "November",
-        "December",
-    ];
-    NAMES.get(usize::from(month).wrapping_sub(1)).copied().unwrap_or("?")
+    chrono::Month::try_from(month).map_or("?", |month| month.name())
 }
 
 #[cfg(test)]

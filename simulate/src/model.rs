@@ -1,6 +1,6 @@
 //! The dynamic model over one second, of all lanes.
 
-use cabin::{Cabin, Cop, Design, Heating, OperatingMode, Temperatures};
+use cabin::{Cabin, Cop, Design, Heating, OperatingMode, Real, Temperatures};
 
 use crate::Dynamics;
 use crate::lanes::{LANES, Lanes};
@@ -156,7 +156,8 @@ impl<'d> AirUnits<'d> {
     #[inline(always)]
     fn cop(&self, above_ambient_k: Lanes) -> Lanes {
         let lift_k = self.warms * above_ambient_k;
-        let hyperbola = self.numerator_k / (lift_k.max(Lanes::ZERO) + self.offset_k);
+        let inverse = Lanes::ONE / (lift_k.max(Lanes::ZERO) + self.offset_k);
+        let hyperbola = self.numerator_k * inverse;
         let mut cop = (self.constant - self.slope_per_k * lift_k + hyperbola).max(self.least).min(self.largest);
         if self.any_other {
             for (lane, other) in self.others.iter().enumerate() {
@@ -166,6 +167,41 @@ impl<'d> AirUnits<'d> {
             }
         }
         cop
+    }
+
+    /// Slope of the COP over cabin temperature in 1/K; 0 at its bounds.
+    #[inline(always)]
+    fn cop_slope(&self, above_ambient_k: Lanes) -> Lanes {
+        let lift_k = self.warms * above_ambient_k;
+        let inverse = Lanes::ONE / (lift_k.max(Lanes::ZERO) + self.offset_k);
+        let hyperbola = self.numerator_k * inverse;
+        let cop = self.constant - self.slope_per_k * lift_k + hyperbola;
+        let of_hyperbola = lift_k.above(Lanes::ZERO, hyperbola * inverse, Lanes::ZERO);
+        let slope = -self.warms * (self.slope_per_k + of_hyperbola);
+        let below_largest = self.largest.above(cop, slope, Lanes::ZERO);
+        cop.above(self.least, below_largest, Lanes::ZERO)
+    }
+}
+
+/// How the slopes of a second change with cabin air and machine, at given states. The other reservoirs are slow: what their
+/// changes would bring about within a second is left out, on both sides of each flow, so that no heat is lost.
+struct Jacobian<'s> {
+    second: &'s Second<'s>,
+    rates: &'s Rates,
+    door_slope_w_k: Lanes,
+    /// Of the heat that the air unit is given, over the cabin temperature, in W/K.
+    given_w_k: Lanes,
+}
+
+impl Jacobian<'_> {
+    /// What so much change of the states changes in the slopes.
+    #[inline(always)]
+    fn times(&self, [_, _, cabin_k, _, _, machine_w]: &Vector) -> Vector {
+        let given_w = self.given_w_k * *cabin_k;
+        let at_once_w = given_w * self.second.air_units.at_once;
+        let mut net_w = self.second.cabin.changes_with_air_w(*cabin_k, self.door_slope_w_k);
+        net_w[2] = net_w[2] + *machine_w + at_once_w;
+        self.rates.of(net_w, given_w - at_once_w - *machine_w)
     }
 }
 
@@ -187,6 +223,16 @@ impl Rates {
             .map(f64::recip),
         )
     }
+
+    /// The slopes that net heats and what the machine takes up make.
+    #[inline(always)]
+    fn of(&self, [heater, interior, cabin, inside, outside]: [Lanes; 5], machine_w: Lanes) -> Vector {
+        let mut slopes = [heater, interior, cabin, inside, outside, machine_w];
+        for (slope, rate) in slopes.iter_mut().zip(self.0) {
+            *slope = *slope * rate;
+        }
+        slopes
+    }
 }
 
 /// What acts on the states during a second.
@@ -200,36 +246,51 @@ pub(crate) struct Second<'s> {
 }
 
 impl Second<'_> {
-    /// The states a second later: the classical Runge-Kutta method of fourth order.
+    /// The states a second later. Two slopes, at its start and two thirds into it (Ralston's method), are all that third order
+    /// needs but for how slopes bring about slopes, which the Jacobian tells as in Rosenbrock's methods; applied twice, it makes
+    /// the method one of fourth order where the equations are linear (Hairer, Nørsett, Wanner, Solving Ordinary Differential
+    /// Equations I, section II.1, and II, section IV.7).
     #[inline(always)]
     pub fn step(&self, rates: &Rates, x: &Vector) -> Vector {
-        let k1 = self.slopes(rates, x);
-        let k2 = self.slopes(rates, &along(x, &k1, 0.5));
-        let k3 = self.slopes(rates, &along(x, &k2, 0.5));
-        let k4 = self.slopes(rates, &along(x, &k3, 1.0));
+        let start = self.slopes(rates, x);
+        let later = self.slopes(rates, &along(x, &start, 2.0 / 3.0));
+        let mut bend = later;
+        for (bend, start) in bend.iter_mut().zip(start) {
+            *bend = *bend - start;
+        }
+        let jacobian = self.jacobian(rates, x);
+        let second = jacobian.times(&bend);
+        let third = jacobian.times(&second);
         let mut out = *x;
         for i in 0..out.len() {
-            out[i] = out[i] + (k1[i] + (k2[i] + k3[i]) * 2.0 + k4[i]) * (1.0 / 6.0);
+            out[i] = out[i] + (start[i] + bend[i] * 0.75 + second[i] * 0.25 + third[i] * 0.0625);
         }
         out
     }
 
     /// Eq. `odes` with eq. `steady-state-hc`, and its first-order lag, eq. `vcc-ode`.
     #[inline(always)]
-    fn slopes(&self, Rates(rates): &Rates, x: &Vector) -> Vector {
+    fn slopes(&self, rates: &Rates, x: &Vector) -> Vector {
         let t = temperatures(x);
         let machine_w = x[5];
         let given_w = self.air_units.cop(t.cabin_k - self.cabin.ambient_k()) * self.air_unit_power_w;
         let at_once_w = given_w * self.air_units.at_once;
         let flows =
             self.cabin.flows_abreast(&t, self.door_loss_share, machine_w + at_once_w, self.radiant_heater_power_w);
-        let [heater, interior, cabin, inside, outside] = flows.net_w();
-        let net = [heater, interior, cabin, inside, outside, given_w - at_once_w - machine_w];
-        let mut slopes = net;
-        for (slope, rate) in slopes.iter_mut().zip(rates) {
-            *slope = *slope * *rate;
+        rates.of(flows.net_w(), given_w - at_once_w - machine_w)
+    }
+
+    /// Curves without a formula of their own here count as level.
+    #[inline(always)]
+    fn jacobian<'s>(&'s self, rates: &'s Rates, x: &Vector) -> Jacobian<'s> {
+        let t = temperatures(x);
+        let cop_per_k = self.air_units.cop_slope(t.cabin_k - self.cabin.ambient_k());
+        Jacobian {
+            second: self,
+            rates,
+            door_slope_w_k: self.cabin.door_slope_w_k(t.cabin_k, self.door_loss_share),
+            given_w_k: cop_per_k * self.air_unit_power_w,
         }
-        slopes
     }
 }
 

@@ -14,6 +14,7 @@
 //! depend on curtain and heat source, `T_0` does not depend on the window: the work is shared between designs and
 //! windows, and a point costs a few multiplications.
 
+mod annual;
 mod blocks;
 mod certificate;
 mod grid;
@@ -22,6 +23,7 @@ pub mod nlp;
 mod sample;
 mod states;
 
+pub use annual::{AnnualMean, YearSamples};
 pub use certificate::{CertificateError, certify};
 pub use grid::{Grid, GridError};
 pub use method::Method;

@@ -38,6 +38,9 @@ pub fn lock_path(database: &Path) -> PathBuf {
     PathBuf::from(path)
 }
 
+/// Rows that SQLite's thread reads ahead: with fewer, the two threads wait for each other.
+const ROWS_AHEAD: usize = 1024;
+
 /// Whether a transaction is half written in the file, or one is being written.
 fn has_journal(path: &Path) -> bool {
     let mut journal = path.as_os_str().to_owned();
@@ -51,6 +54,7 @@ fn reading(path: &Path) -> SqliteConnectOptions {
         .filename(path)
         .read_only(true)
         .busy_timeout(BUSY_TIMEOUT)
+        .row_buffer_size(ROWS_AHEAD)
         // 64 MiB of pages: a study's tables are read back from memory.
         .pragma("cache_size", "-65536")
 }
@@ -76,6 +80,7 @@ impl Store {
             .synchronous(SqliteSynchronous::Normal)
             .foreign_keys(true)
             .busy_timeout(PATIENCE)
+            .row_buffer_size(ROWS_AHEAD)
             // 64 MiB of pages: a study's tables are read back from memory.
             .pragma("cache_size", "-65536")
             // Folds the log into the file every 64 MiB instead of every 4: each time waits for the disk twice.

@@ -148,10 +148,31 @@ impl Store {
     /// # Errors
     /// [`StoreError::Refused`], [`StoreError::Damaged`].
     pub fn optima(&mut self, grid: &StoredGrid, first: i64, last: i64) -> Result<Vec<StoredOptimum>, StoreError> {
+        let all = |places: usize| (0..places).collect::<Vec<_>>();
+        self.optima_of(grid, [first, last], &all(grid.designs.len()), &all(grid.windows.len()))
+    }
+
+    /// As [`Store::optima`], of some designs and windows alone, by their places in the grid.
+    ///
+    /// # Errors
+    /// [`StoreError::Refused`], [`StoreError::Damaged`].
+    pub fn optima_of(
+        &mut self,
+        grid: &StoredGrid,
+        [first, last]: [i64; 2],
+        designs: &[usize],
+        windows: &[usize],
+    ) -> Result<Vec<StoredOptimum>, StoreError> {
+        let ids = |ids: &[i64], places: &[usize]| {
+            serde_json::json!(places.iter().map(|&place| ids[place]).collect::<Vec<_>>()).to_string()
+        };
+        let (designs, windows) = (ids(&grid.design_ids, designs), ids(&grid.window_ids, windows));
         self.drive_checked(async |c, damage| {
             let sql = "SELECT * FROM optimum_point WHERE sample_id BETWEEN ? AND ?
+                AND design_id IN (SELECT value FROM json_each(?)) AND window_id IN (SELECT value FROM json_each(?))
                 ORDER BY sample_id, design_id, window_id";
-            let rows = sqlx::query(sql).bind(first).bind(last).fetch_all(c).await?;
+            let query = sqlx::query(sql).bind(first).bind(last).bind(designs).bind(windows);
+            let rows = query.fetch_all(c).await?;
             whole(damage, "optimum_point", &rows)?;
             rows.iter()
                 .map(|r| {

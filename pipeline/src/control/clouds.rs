@@ -5,13 +5,12 @@ use ingest::sample::Sample;
 use rayon::prelude::*;
 use setpoints::{Hour, Setpoints, extract};
 use std::collections::BTreeMap;
-use store::{SetpointRow, Store, StoredGrid};
+use store::{SetpointRow, Store, StoredGrid, StoredOptimum};
 use study::Study;
 
 use crate::PipelineError;
-
-/// Samples whose optima are read at a time.
-const BLOCK: usize = 128;
+use crate::in_order::in_order;
+use crate::readers::{Reader, blocks};
 
 /// The optimum of an hour of a local year and month; it weighs nothing yet.
 #[derive(Debug, Clone, Copy)]
@@ -36,6 +35,22 @@ pub(super) fn year(study: &Study, sample: &Sample) -> i32 {
     sample.segment.start.with_timezone(&study.zone).year()
 }
 
+/// A stored optimum of a block of samples, with the place of its design and window; `None` where there is no operation.
+fn seen(study: &Study, block: &[&Sample], row: &StoredOptimum) -> Option<(usize, Seen)> {
+    let o = row.outcome.as_ref()?.operation()?;
+    let sample = block[block.binary_search_by_key(&row.sample_id, |s| s.id).ok()?];
+    let hour = Hour {
+        mode: o.mode,
+        ambient_k: sample.disturbances.ambient_temperature_k,
+        cabin_k: o.temperatures.cabin_k,
+        curtain: o.devices.air_curtain,
+        heaters_k: o.devices.radiant_heaters.then_some(o.temperatures.radiant_heater_k),
+        weight: 0.0,
+    };
+    let cell = row.design * study.grid.windows().len() + row.window;
+    Some((cell, Seen { year: year(study, sample), month: sample.month, hour }))
+}
+
 impl<'s> Clouds<'s> {
     /// Reads the optima of all samples; the stored grid is that of the study.
     pub fn read(
@@ -48,26 +63,20 @@ impl<'s> Clouds<'s> {
         let mut samples: Vec<&Sample> = samples.iter().collect();
         samples.sort_by_key(|s| s.id);
         let mut clouds = Self { study, cells: vec![Vec::new(); study.grid.points()], shares, samples: BTreeMap::new() };
-        for block in samples.chunks(BLOCK) {
-            let of_id: BTreeMap<i64, (&Sample, i32)> = block.iter().map(|s| (s.id, (*s, year(study, s)))).collect();
-            for (sample, year) in of_id.values() {
-                *clouds.samples.entry((*year, sample.month)).or_default() += 1;
-            }
-            for row in store.optima(grid, block[0].id, block[block.len() - 1].id)? {
-                let operation = row.outcome.as_ref().and_then(|outcome| outcome.operation());
-                let (Some(o), Some((sample, year))) = (operation, of_id.get(&row.sample_id)) else { continue };
-                let hour = Hour {
-                    mode: o.mode,
-                    ambient_k: sample.disturbances.ambient_temperature_k,
-                    cabin_k: o.temperatures.cabin_k,
-                    curtain: o.devices.air_curtain,
-                    heaters_k: o.devices.radiant_heaters.then_some(o.temperatures.radiant_heater_k),
-                    weight: 0.0,
-                };
-                let seen = Seen { year: *year, month: sample.month, hour };
-                clouds.cells[row.design * grid.windows.len() + row.window].push(seen);
-            }
+        for sample in &samples {
+            *clouds.samples.entry((year(study, sample), sample.month)).or_default() += 1;
         }
+        let blocks: Vec<&[&Sample]> = blocks(&samples).collect();
+        let read = |reader: &mut Reader, block: &&[&Sample]| -> Result<Vec<(usize, Seen)>, PipelineError> {
+            let rows = reader.optima(study, grid, block)?;
+            Ok(rows.iter().filter_map(|row| seen(study, block, row)).collect())
+        };
+        in_order(&blocks, rayon::current_num_threads(), read, |of_block| {
+            for (cell, seen) in of_block? {
+                clouds.cells[cell].push(seen);
+            }
+            Ok::<(), PipelineError>(())
+        })?;
         Ok(clouds)
     }
 

@@ -107,7 +107,9 @@ impl Driving<'_> {
             if open.is_empty() {
                 continue;
             }
-            let mut optima = optima(store, &self.basis.grid, samples)?;
+            let of_designs: Vec<usize> = open.iter().map(|(id, _)| id.design).collect();
+            let windows = &self.basis.study.control.windows;
+            let mut optima = optima(store, &self.basis.grid, samples, &of_designs, windows)?;
             let mut of_design = |(id, key): (ControlId, String)| {
                 let windows = self.basis.study.control.windows.iter();
                 let of_window = |w: &usize| {

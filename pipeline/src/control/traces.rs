@@ -32,7 +32,7 @@ pub(super) fn traces(driving: &Driving<'_>, store: &mut Store) -> Result<Vec<Con
     let Ok(in_time) = MissionInTime::new(study, &basis.views, &basis.surroundings, samples, &loads) else {
         return Ok(Vec::new());
     };
-    let mut optima = optima(store, &basis.grid, samples)?;
+    let mut optima = optima(store, &basis.grid, samples, &[design], &[window])?;
     let Some(Ok(optima)) = optima.remove(&(design, window)) else { return Ok(Vec::new()) };
     let limits: Vec<Option<usize>> =
         SHOWN_LIMITS.iter().map(|limit| nearest_window(study, &study.control.windows, *limit)).collect();

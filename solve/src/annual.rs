@@ -1,0 +1,133 @@
+//! What designs and windows come to in a year, from samples that are solved and added up, none of them kept: for studies of more
+//! points than anybody stores.
+
+use cabin::{Disturbances, OperatingMode, Optimum, PassengerViews, Vehicle};
+use rayon::prelude::*;
+
+use crate::{Grid, SampleSolver};
+
+/// Days of the months in a year without 29 February (paper, eq. meanPower).
+const DAYS: [f64; 12] = [31.0, 28.0, 31.0, 30.0, 31.0, 30.0, 31.0, 31.0, 30.0, 31.0, 30.0, 31.0];
+
+/// Samples of a year by their months, within one in the order given.
+#[derive(Debug, Clone, Default)]
+pub struct YearSamples {
+    months: [Vec<Disturbances>; 12],
+}
+
+/// What a design and window come to in a year.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AnnualMean {
+    /// Mean HVAC power in W; `None` where no sample has an operation, as the two parts of it.
+    pub hvac_power_w: Option<f64>,
+    /// Of that, in samples whose air unit heats or rests, in W.
+    pub heating_power_w: Option<f64>,
+    /// In samples whose air unit cools, in W.
+    pub cooling_power_w: Option<f64>,
+    /// Samples.
+    pub samples: u64,
+    /// Of these without an operation.
+    pub unsolved: u64,
+}
+
+impl YearSamples {
+    /// Adds a sample of a local month, 1 … 12; `false` where there is no such month.
+    pub fn add(&mut self, month: u8, disturbances: Disturbances) -> bool {
+        let place = usize::from(month).wrapping_sub(1);
+        self.months.get_mut(place).map(|of_month| of_month.push(disturbances)).is_some()
+    }
+
+    /// Solves every sample and gives the means of the year, design by design, each with its windows in the grid's order: months by
+    /// their days, within one all solved samples alike (paper, eq. meanPower); months without any do not weigh. Sums are
+    /// compensated (Neumaier, DOI 10.1002/zamm.19740540106), as those of SQLite, and do not depend on the number of threads.
+    #[must_use]
+    pub fn means(&self, vehicle: &Vehicle, grid: &Grid) -> Vec<AnnualMean> {
+        let views = PassengerViews::new(vehicle);
+        let months: Vec<Vec<MonthSum>> =
+            self.months.par_iter().map(|samples| month(vehicle, &views, grid, samples)).collect();
+        (0..grid.points()).map(|point| annual(months.iter().map(|of_points| &of_points[point]))).collect()
+    }
+}
+
+/// Sums over the samples of a month.
+#[derive(Debug, Clone, Copy, Default)]
+struct MonthSum {
+    samples: u64,
+    solved: u64,
+    heating_w: Sum,
+    cooling_w: Sum,
+    all_w: Sum,
+}
+
+fn month(vehicle: &Vehicle, views: &PassengerViews, grid: &Grid, samples: &[Disturbances]) -> Vec<MonthSum> {
+    let mut solver = SampleSolver::new(vehicle, views, grid);
+    let mut optima = vec![Optimum::UNSOLVED; grid.points()];
+    let mut sums = vec![MonthSum::default(); grid.points()];
+    for sample in samples {
+        solver.solve(sample, &mut optima);
+        for (sum, optimum) in sums.iter_mut().zip(&optima) {
+            sum.samples += 1;
+            let Some(o) = optimum.outcome.operation() else { continue };
+            sum.solved += 1;
+            let power_w = o.hvac_power_w();
+            sum.all_w.add(power_w);
+            match o.mode {
+                OperatingMode::Heating | OperatingMode::Passive => sum.heating_w.add(power_w),
+                OperatingMode::Cooling => sum.cooling_w.add(power_w),
+            }
+        }
+    }
+    sums
+}
+
+fn annual<'m>(months: impl Iterator<Item = &'m MonthSum>) -> AnnualMean {
+    let (mut days, mut sums) = (Sum::default(), [Sum::default(); 3]);
+    let (mut samples, mut unsolved) = (0, 0);
+    for (of_month, days_of_month) in months.zip(DAYS) {
+        samples += of_month.samples;
+        unsolved += of_month.samples - of_month.solved;
+        if of_month.solved == 0 {
+            continue;
+        }
+        days.add(days_of_month);
+        for (sum, part) in sums.iter_mut().zip([of_month.all_w, of_month.heating_w, of_month.cooling_w]) {
+            sum.add(part.value() / of_month.solved as f64 * days_of_month);
+        }
+    }
+    let [hvac_power_w, heating_power_w, cooling_power_w] =
+        sums.map(|sum| (days.value() > 0.0).then(|| sum.value() / days.value()));
+    AnnualMean { hvac_power_w, heating_power_w, cooling_power_w, samples, unsolved }
+}
+
+/// A compensated sum.
+#[derive(Debug, Clone, Copy, Default)]
+struct Sum {
+    sum: f64,
+    lost: f64,
+}
+
+impl Sum {
+    fn add(&mut self, value: f64) {
+        let next = self.sum + value;
+        self.lost += if self.sum.abs() > value.abs() { (self.sum - next) + value } else { (value - next) + self.sum };
+        self.sum = next;
+    }
+
+    fn value(self) -> f64 {
+        self.sum + self.lost
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Sum;
+
+    #[test]
+    fn prop_a_sum_keeps_what_a_plain_one_loses() {
+        let mut sum = Sum::default();
+        for value in [1e16, 1.0, -1e16, 1.0] {
+            sum.add(value);
+        }
+        assert_eq!(sum.value(), 2.0);
+    }
+}
