@@ -54,8 +54,9 @@ def ingest():
 
 def by_polars():
     """Hourly means of the same columns."""
+    types = dict.fromkeys(NUMBERS, pl.Float64) | {"itcs_busRoute": pl.String}
     hours = (
-        pl.scan_csv(telemetry, include_file_paths="file", null_values="NaN", schema_overrides=dict.fromkeys(NUMBERS, pl.Float64) | {"itcs_busRoute": pl.String})
+        pl.scan_csv(telemetry, include_file_paths="file", null_values="NaN", schema_overrides=types)
         .group_by("file", pl.col("time_unix") // 3600)
         .agg(
             pl.col("itcs_numberOfPassengers").mean(),
@@ -132,5 +133,5 @@ hours = pa.table({
 ours = points / seconds(lambda: bc.optimize(hours))
 row("optima", "busclimate.optimize", ours, "optima/s", note="all cores, with the table of all columns")
 each, problems = by_ipopt()
-row("optima", f"CasADi {casadi.__version__}, Ipopt", 1 / each, "problems/s", ours, f"{problems} problems, one for each choice of devices; 4 passengers")
-
+note = f"{problems} problems, one for each choice of devices; 4 passengers"
+row("optima", f"CasADi {casadi.__version__}, Ipopt", 1 / each, "problems/s", ours, note)

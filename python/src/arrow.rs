@@ -1,6 +1,6 @@
 //! Columns in, tables out.
 
-use arrow_array::{Array, ArrayRef, Float64Array, RecordBatch};
+use arrow_array::{Array, ArrayRef, Float64Array, Int64Array, RecordBatch};
 use arrow_cast::cast;
 use arrow_schema::{DataType, Field, Schema};
 use pyo3::PyResult;
@@ -22,6 +22,26 @@ pub fn floats(what: &str, values: &ArrayRef) -> PyResult<Float64Array> {
     let values = cast(values, &DataType::Float64).map_err(|e| data(what, format!("these are no numbers: {e}")))?;
     let floats = values.as_any().downcast_ref::<Float64Array>();
     floats.cloned().ok_or_else(|| data(what, "these are no numbers"))
+}
+
+/// A column of whole numbers, such as ids; every value must be there. `None` where the data has no such column.
+pub fn whole_numbers(argument: &str, batch: &RecordBatch, column: &str) -> PyResult<Option<Int64Array>> {
+    /// Up to here every whole number has a floating one of its own.
+    const LARGEST: f64 = (1_u64 << 53) as f64;
+    let Some(values) = batch.column_by_name(column) else { return Ok(None) };
+    let what = format!("{argument}: column {column}");
+    if values.data_type().is_integer() && values.null_count() == 0 {
+        let whole = cast(values, &DataType::Int64).map_err(|e| data(&what, e))?;
+        if let Some(whole) = whole.as_any().downcast_ref::<Int64Array>().filter(|whole| whole.null_count() == 0) {
+            return Ok(Some(whole.clone()));
+        }
+    }
+    let values = floats(&what, values)?;
+    let whole = |(row, value): (usize, &f64)| match value.fract() == 0.0 && value.abs() <= LARGEST {
+        true => Ok(*value as i64),
+        false => Err(data(&what, format!("row {row}: {value} is no whole number"))),
+    };
+    values.values().iter().enumerate().map(whole).collect::<PyResult<Vec<i64>>>().map(|ids| Some(ids.into()))
 }
 
 /// A table of columns with their names.

@@ -2,8 +2,6 @@
 
 use ::study::keys;
 use arrow_array::{ArrayRef, BooleanArray, Float64Array, Int8Array, Int64Array, RecordBatch, StringArray};
-use arrow_cast::cast;
-use arrow_schema::DataType;
 use cabin::{Disturbances, Operation, Optimum, celsius};
 use pyo3::prelude::*;
 use pyo3::types::PyAny;
@@ -12,8 +10,7 @@ use pyo3_arrow::input::AnyRecordBatch;
 use solve::{Grid, solve_blocks};
 use std::sync::Arc;
 
-use crate::arrow::table;
-use crate::errors::data;
+use crate::arrow::{table, whole_numbers};
 use crate::samples::disturbances;
 use crate::settings::study;
 
@@ -97,14 +94,7 @@ pub fn model_key(
 impl Samples {
     fn of(batch: &RecordBatch, before: usize) -> PyResult<Self> {
         let disturbances = disturbances(ARGUMENT, batch, before, true)?;
-        let ids = batch.column_by_name("sample_id").map(|ids| {
-            let ids = cast(ids, &DataType::Int64).map_err(|e| data(ARGUMENT, format!("column sample_id: {e}")))?;
-            ids.as_any()
-                .downcast_ref::<Int64Array>()
-                .cloned()
-                .ok_or_else(|| data(ARGUMENT, "column sample_id: no whole numbers"))
-        });
-        Ok(Self { ids: ids.transpose()?, disturbances })
+        Ok(Self { ids: whole_numbers(ARGUMENT, batch, "sample_id")?, disturbances })
     }
 }
 

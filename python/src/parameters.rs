@@ -11,7 +11,7 @@ use std::sync::Arc;
 use study::Study;
 use toml::{Table, Value};
 
-use crate::arrow::table;
+use crate::arrow::{table, whole_numbers};
 use crate::errors::{argument, data};
 use crate::samples::{column, disturbances};
 use crate::settings;
@@ -74,8 +74,7 @@ pub fn parameter_study(
             Err(error) => Err(error.to_string()),
         };
         let results: Vec<Result<Vec<AnnualMean>, String>> = sets.par_iter().map(run).collect();
-        let portions: Vec<(&Set, &Result<_, _>)> = sets.iter().zip(&results).collect();
-        means(&base, &portions)
+        means(&base, &sets, &results)
     })
 }
 
@@ -98,7 +97,8 @@ fn year(samples: AnyRecordBatch) -> PyResult<YearSamples> {
 fn read(sets: AnyRecordBatch, file: &Table, known: &[&str]) -> PyResult<Vec<Set>> {
     let mut all = Vec::new();
     for batch in sets.into_table()?.into_inner().0 {
-        let ids = column("sets", &batch, ID)?;
+        let missing = || data("sets", format!("column {ID} is missing"));
+        let ids = whole_numbers("sets", &batch, ID)?.ok_or_else(missing)?;
         let constants = constants(&batch, known)?;
         for row in 0..batch.num_rows() {
             let mut file = file.clone();
@@ -109,7 +109,7 @@ fn read(sets: AnyRecordBatch, file: &Table, known: &[&str]) -> PyResult<Vec<Set>
             for (name, values) in &constants {
                 vehicle.insert(name.clone(), Value::Float(values.value(row)));
             }
-            all.push(Set { id: ids.value(row) as i64, file });
+            all.push(Set { id: ids.value(row), file });
         }
     }
     Ok(all)
@@ -129,13 +129,14 @@ fn constants(batch: &RecordBatch, known: &[&str]) -> PyResult<Vec<(String, Float
     names.map(constant).collect()
 }
 
-fn means(base: &Study, portions: &[(&Set, &Result<Vec<AnnualMean>, String>)]) -> PyResult<PyTable> {
+fn means(base: &Study, sets: &[Set], results: &[Result<Vec<AnnualMean>, String>]) -> PyResult<PyTable> {
     let (grid, points) = (&base.grid, base.grid.points());
     let windows = grid.windows();
-    let rows: Vec<(&Set, usize, Result<AnnualMean, &str>)> = portions
+    let rows: Vec<(&Set, usize, Result<AnnualMean, &str>)> = sets
         .iter()
+        .zip(results)
         .flat_map(|(set, result)| {
-            (0..points).map(move |point| (*set, point, result.as_ref().map(|of| of[point]).map_err(String::as_str)))
+            (0..points).map(move |point| (set, point, result.as_ref().map(|of| of[point]).map_err(String::as_str)))
         })
         .collect();
     let window = |of: fn(&cabin::ComfortWindow) -> f64| -> ArrayRef {

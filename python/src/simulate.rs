@@ -165,13 +165,10 @@ fn driven(
     for (point, optima) in optima.iter().enumerate() {
         for replay in Replay::ALL {
             let result = match optima {
-                Ok(_) => summaries.next().ok_or_else(|| InputError::new_err("a variant was not simulated"))?,
-                Err(reason) => {
-                    rows.push((point, replay, Err(reason)));
-                    continue;
-                }
+                Ok(_) => Ok(summaries.next().ok_or_else(|| InputError::new_err("a variant was not simulated"))?),
+                Err(reason) => Err(reason),
             };
-            rows.push((point, replay, Ok(result)));
+            rows.push((point, replay, result));
         }
     }
     summary_table(study, &rows)

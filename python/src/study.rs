@@ -89,7 +89,8 @@ impl Study {
     /// missing is computed. Gives the findings in a few lines where a report was made. `wait_s` is how long to wait for another
     /// run on the same database.
     ///
-    /// Refused files and the like are UserWarnings. Raises InputError where inputs or database cannot be used, KeyboardInterrupt after Ctrl-C; a further run resumes.
+    /// Refused files and the like are UserWarnings. Raises InputError where inputs or database cannot be used, KeyboardInterrupt
+    /// after Ctrl-C; a further run resumes.
     #[pyo3(signature = (stages=None, *, wait_s=0.0))]
     fn run(&self, py: Python<'_>, stages: Option<Vec<String>>, wait_s: f64) -> PyResult<Vec<String>> {
         let named = |name: &String| {

@@ -98,12 +98,15 @@ def test_a_parameter_study_gives_the_years_of_the_program(study: bc.Study) -> No
     alone = pl.DataFrame(bc.parameter_study(sets.slice(1), samples, windows=[0.5, 1.0]))
     assert found.filter(pl.col("set_id") == 8).equals(alone)
     assert found.filter(pl.col("set_id") == 7).drop("set_id").equals(base.drop("set_id"))
-    elsewhere = pl.DataFrame(bc.parameter_study(pa.table({"set_id": [8]}), samples, windows=[0.5, 1.0], vehicle={"conduction_shell_w_m2_k": 2.0}))
-    assert elsewhere.equals(alone)
+    vehicle = {"conduction_shell_w_m2_k": 2.0}
+    given = bc.parameter_study(pa.table({"set_id": [8]}), samples, windows=[0.5, 1.0], vehicle=vehicle)
+    assert pl.DataFrame(given).equals(alone)
     better = found.filter(pl.col("set_id") == 8)["heating_power_w"] < found.filter(pl.col("set_id") == 7)["heating_power_w"]
     assert better.all()
     with pytest.raises(bc.InputError, match="samples: column month is missing"):
         bc.parameter_study(sets, one())
+    with pytest.raises(bc.InputError, match="sets: column set_id: row 1: 1.5 is no whole number"):
+        bc.parameter_study(pa.table({"set_id": [1.0, 1.5]}), samples)
     with pytest.raises(bc.StudyError, match="sets: shell_aera_m2 is no constant of the bus; there are .*shell_area_m2"):
         bc.parameter_study(pa.table({"set_id": [1], "shell_aera_m2": [3.0]}), samples)
     wrong = pl.DataFrame(bc.parameter_study(pa.table({"set_id": [1], "shell_area_m2": [-3.0]}), samples, windows=[1.0]))

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use crate::{Grid, SampleSolver};
 
 /// Days of the months in a year without 29 February (paper, eq. meanPower).
-const DAYS: [f64; 12] = [31.0, 28.0, 31.0, 30.0, 31.0, 30.0, 31.0, 31.0, 30.0, 31.0, 30.0, 31.0];
+pub const DAYS_OF_MONTH: [f64; 12] = [31.0, 28.0, 31.0, 30.0, 31.0, 30.0, 31.0, 31.0, 30.0, 31.0, 30.0, 31.0];
 
 /// Samples of a year by their months, within one in the order given.
 #[derive(Debug, Clone, Default)]
@@ -83,7 +83,7 @@ fn month(vehicle: &Vehicle, views: &PassengerViews, grid: &Grid, samples: &[Dist
 fn annual<'m>(months: impl Iterator<Item = &'m MonthSum>) -> AnnualMean {
     let (mut days, mut sums) = (Sum::default(), [Sum::default(); 3]);
     let (mut samples, mut unsolved) = (0, 0);
-    for (of_month, days_of_month) in months.zip(DAYS) {
+    for (of_month, days_of_month) in months.zip(DAYS_OF_MONTH) {
         samples += of_month.samples;
         unsolved += of_month.samples - of_month.solved;
         if of_month.solved == 0 {

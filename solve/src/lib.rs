@@ -23,7 +23,7 @@ pub mod nlp;
 mod sample;
 mod states;
 
-pub use annual::{AnnualMean, YearSamples};
+pub use annual::{AnnualMean, DAYS_OF_MONTH, YearSamples};
 pub use certificate::{CertificateError, certify};
 pub use grid::{Grid, GridError};
 pub use method::Method;

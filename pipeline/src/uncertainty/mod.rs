@@ -8,15 +8,13 @@ mod left_out;
 mod months;
 
 use chrono::{Datelike, NaiveDate};
+use solve::DAYS_OF_MONTH;
 use std::collections::{BTreeMap, BTreeSet};
 use store::{MonthDays, MonthSums, Uncertainty};
 
-use self::bootstrap::{Draws, MONTHS, Part, single_day_months};
+use self::bootstrap::{Draws, Part, single_day_months};
 pub use self::days::{DaysOfMonth, day};
 pub use self::driven::driven_ends;
-
-/// Days of the months in a year without 29 February (paper, eq. meanPower).
-const DAYS_OF_MONTH: [f64; MONTHS] = [31.0, 28.0, 31.0, 30.0, 31.0, 30.0, 31.0, 31.0, 30.0, 31.0, 30.0, 31.0];
 
 /// Means of the year of what months sum up, each with how many samples or seconds it has: months by their days, within one all
 /// alike (paper, eq. meanPower); those without any do not weigh. Not a number where no month has any.
