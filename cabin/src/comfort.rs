@@ -134,11 +134,10 @@ impl Cabin<'_> {
         self.mean_radiant_k(t, self.views.mean())
     }
 
-    /// Whether the average passenger's state lies in the range of use of ISO 7730.
+    /// Whether the average passenger's state lies in the range of use of ISO 7730, at air and mean radiant temperature in K.
     #[must_use]
-    pub fn standard_range(&self, t: &Temperatures, pmv: f64) -> StandardRange {
-        let radiant_k = self.mean_radiant_temperature_k(t);
-        self.pmv.standard_range(t.cabin_k - ZERO_CELSIUS_K, radiant_k - ZERO_CELSIUS_K, pmv)
+    pub fn standard_range(&self, cabin_k: f64, mean_radiant_k: f64, pmv: f64) -> StandardRange {
+        self.pmv.standard_range(cabin_k - ZERO_CELSIUS_K, mean_radiant_k - ZERO_CELSIUS_K, pmv)
     }
 
     fn mean_radiant_k(&self, t: &Temperatures, view: f64) -> f64 {

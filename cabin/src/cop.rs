@@ -45,6 +45,15 @@ pub enum Cop {
     },
     /// Piecewise linear through `(lift in K, COP)`, constant beyond the ends. Made by [`Cop::table`].
     Table(Vec<(f64, f64)>),
+    /// `scale · COP + shift` of another curve, which keeps it falling. Made by [`Cop::changed`].
+    Changed {
+        /// The other curve.
+        of: Box<Cop>,
+        /// Factor, above 0.
+        scale: f64,
+        /// What is added.
+        shift: f64,
+    },
 }
 
 /// A COP curve that the search for the optimum cannot use.
@@ -111,6 +120,18 @@ impl Cop {
         Ok(Self::Table(rows))
     }
 
+    /// The curve times `scale`, which is above 0, plus `shift`; the very curve with 1 and 0. Whether it is positive at all
+    /// lifts is for whoever uses it to check.
+    #[must_use]
+    pub fn changed(&self, scale: f64, shift: f64) -> Self {
+        match self {
+            same if scale == 1.0 && shift == 0.0 => same.clone(),
+            Self::Constant(cop) => Self::Constant(cop * scale + shift),
+            Self::Table(rows) => Self::Table(rows.iter().map(|(lift, cop)| (*lift, cop * scale + shift)).collect()),
+            curve => Self::Changed { of: Box::new(curve.clone()), scale, shift },
+        }
+    }
+
     /// COP at a lift in K. Positive, and never rising with the lift.
     #[must_use]
     #[inline]
@@ -125,6 +146,7 @@ impl Cop {
             }
             Self::Linear { at_zero, slope_per_k, min, max } => (at_zero - slope_per_k * lift_k).clamp(*min, *max),
             Self::Table(rows) => interpolate(rows, lift_k),
+            Self::Changed { of, scale, shift } => of.at(lift_k) * scale + shift,
         }
     }
 
@@ -136,6 +158,7 @@ impl Cop {
             Self::Hyperbola { .. } | Self::Exponential { .. } => self.at(0.0),
             Self::Linear { max, .. } => *max,
             Self::Table(rows) => rows[0].1,
+            Self::Changed { of, scale, shift } => of.largest() * scale + shift,
         }
     }
 }

@@ -69,6 +69,11 @@ impl Cabin<'_> {
     #[must_use]
     pub fn state(&self, target: Target, heaters: Heaters, guess: &State) -> Option<State> {
         let mut state = *guess;
+        self.settle_state(target, heaters, &mut state).then_some(state)
+    }
+
+    /// As [`Cabin::state`], with the guess in place; `false` where the iteration does not settle.
+    pub fn settle_state(&self, target: Target, heaters: Heaters, state: &mut State) -> bool {
         if let Target::CabinTemperature(cabin_k) = target {
             state.temperatures.cabin_k = cabin_k;
         }
@@ -76,19 +81,23 @@ impl Cabin<'_> {
             state.temperatures.radiant_heater_k = self.heater_target_k;
         }
         let mut gauss = state.gauss;
-        self.settle(&mut state, &mut gauss, heaters, target)?;
+        if !self.settle(state, &mut gauss, heaters, target) {
+            return false;
+        }
         state.gauss = gauss;
         // The kink moves a little as the state settles on the split quadrature.
         for _ in 0..2 {
             let Some(view) = self.kink_view(&state.temperatures, &gauss) else { break };
             let mut split = self.split(view, &gauss);
-            self.settle(&mut state, &mut split, heaters, target)?;
+            if !self.settle(state, &mut split, heaters, target) {
+                return false;
+            }
         }
-        Some(state)
+        true
     }
 
-    fn settle(&self, state: &mut State, passengers: &mut [Passenger], heaters: Heaters, target: Target) -> Option<()> {
-        (0..MOST_STEPS).find(|_| self.step(state, passengers, heaters, target) < SETTLED_K).map(|_| ())
+    fn settle(&self, state: &mut State, passengers: &mut [Passenger], heaters: Heaters, target: Target) -> bool {
+        (0..MOST_STEPS).any(|_| self.step(state, passengers, heaters, target) < SETTLED_K)
     }
 
     /// One Newton step; returns the largest change of a temperature in K.
@@ -128,20 +137,20 @@ impl Cabin<'_> {
 }
 
 impl State {
-    /// A guess of the state with the vote `pmv`, extrapolated from this state and, where there is one, the state before it
-    /// on the way: Hermite's cubic through both with their slopes, or the tangent.
+    /// A guess of the state with the vote `pmv`, from this state and another one on the way: Hermite's cubic through both with
+    /// their slopes, where it leads not much farther than their distance, or else the tangent.
     #[must_use]
-    pub fn extrapolate(&self, pmv: f64, before: Option<&Self>) -> Self {
+    pub fn toward(&self, pmv: f64, other: Option<&Self>) -> Self {
         let step = pmv - self.pmv;
         let last = self.unknowns();
-        let values = match before {
-            Some(before) if step.abs() < FARTHEST * (self.pmv - before.pmv).abs() => {
-                let width = self.pmv - before.pmv;
+        let values = match other {
+            Some(other) if step.abs() < FARTHEST * (self.pmv - other.pmv).abs() => {
+                let width = self.pmv - other.pmv;
                 let s = step / width;
                 // Hermite's basis at 1 + s.
                 let (first_value, first_slope) = (s * s * (3.0 + 2.0 * s), s * s * (1.0 + s) * width);
                 let last_slope = s * (1.0 + s) * (1.0 + s) * width;
-                let first = before.unknowns();
+                let first = other.unknowns();
                 std::array::from_fn(|i| {
                     let ((x0, slope0), (x1, slope1)) = (first[i], last[i]);
                     x1 + (x0 - x1) * first_value + slope0 * first_slope + slope1 * last_slope

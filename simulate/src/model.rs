@@ -135,7 +135,7 @@ impl<'d> AirUnits<'d> {
                 Cop::Hyperbola { numerator_k, offset_k, min, max } => {
                     (Some([0.0, 0.0, *numerator_k, *offset_k]), [*min, *max])
                 }
-                Cop::Exponential { .. } | Cop::Table(_) => (None, unbounded),
+                Cop::Exponential { .. } | Cop::Table(_) | Cop::Changed { .. } => (None, unbounded),
             };
             let [constant, slope_per_k, numerator_k, offset_k] = formula.unwrap_or([0.0, 0.0, 0.0, 1.0]);
             self.others[lane] = if formula.is_none() { Some(cop) } else { None };

@@ -45,13 +45,23 @@ impl YearSamples {
         let views = PassengerViews::new(vehicle);
         let months: Vec<Vec<MonthSum>> =
             self.months.par_iter().map(|samples| month(vehicle, &views, grid, samples)).collect();
-        (0..grid.points()).map(|point| annual(months.iter().map(|of_points| &of_points[point]))).collect()
+        year(grid.points(), &months)
     }
+
+    /// The samples of each month.
+    pub(crate) fn months(&self) -> &[Vec<Disturbances>; 12] {
+        &self.months
+    }
+}
+
+/// The means of the year of so many points from the sums of its months.
+pub(crate) fn year(points: usize, months: &[Vec<MonthSum>]) -> Vec<AnnualMean> {
+    (0..points).map(|point| annual(months.iter().map(|of_points| &of_points[point]))).collect()
 }
 
 /// Sums over the samples of a month.
 #[derive(Debug, Clone, Copy, Default)]
-struct MonthSum {
+pub(crate) struct MonthSum {
     samples: u64,
     solved: u64,
     heating_w: Sum,
@@ -66,18 +76,24 @@ fn month(vehicle: &Vehicle, views: &PassengerViews, grid: &Grid, samples: &[Dist
     for sample in samples {
         solver.solve(sample, &mut optima);
         for (sum, optimum) in sums.iter_mut().zip(&optima) {
-            sum.samples += 1;
-            let Some(o) = optimum.outcome.operation() else { continue };
-            sum.solved += 1;
-            let power_w = o.hvac_power_w();
-            sum.all_w.add(power_w);
-            match o.mode {
-                OperatingMode::Heating | OperatingMode::Passive => sum.heating_w.add(power_w),
-                OperatingMode::Cooling => sum.cooling_w.add(power_w),
-            }
+            sum.add(optimum.outcome.operation().map(|o| (o.mode, o.hvac_power_w())));
         }
     }
     sums
+}
+
+impl MonthSum {
+    /// A sample with what the air unit does and the power in W, where there is an operation.
+    pub fn add(&mut self, operation: Option<(OperatingMode, f64)>) {
+        self.samples += 1;
+        let Some((mode, power_w)) = operation else { return };
+        self.solved += 1;
+        self.all_w.add(power_w);
+        match mode {
+            OperatingMode::Heating | OperatingMode::Passive => self.heating_w.add(power_w),
+            OperatingMode::Cooling => self.cooling_w.add(power_w),
+        }
+    }
 }
 
 fn annual<'m>(months: impl Iterator<Item = &'m MonthSum>) -> AnnualMean {

@@ -17,8 +17,10 @@
 mod annual;
 mod blocks;
 mod certificate;
+mod choice;
 mod grid;
 mod method;
+mod near;
 pub mod nlp;
 mod sample;
 mod states;
@@ -27,7 +29,8 @@ pub use annual::{AnnualMean, DAYS_OF_MONTH, YearSamples};
 pub use certificate::{CertificateError, certify};
 pub use grid::{Grid, GridError};
 pub use method::Method;
+pub use near::{Bus, YearStates};
 pub use sample::{SampleSolver, solve_blocks};
 
 /// Version of the method: it changes whenever a bit of a stored optimum would come out differently.
-pub const METHOD_VERSION: u32 = 3;
+pub const METHOD_VERSION: u32 = 4;

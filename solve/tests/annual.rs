@@ -1,8 +1,9 @@
 //! A year that is added up while it is solved.
 
 use cabin::{ComfortWindow, Infeasible, OperatingMode, Optimum, Outcome, PassengerViews, Vehicle, kelvin};
-use solve::{Grid, SampleSolver, YearSamples};
-use testing::{paper_designs, year};
+use solve::{Bus, Grid, SampleSolver, YearSamples, YearStates};
+use std::sync::Arc;
+use testing::{all_designs, paper_designs, year};
 
 /// Against plain sums over stored optima, months one after the other.
 #[test]
@@ -75,4 +76,33 @@ fn prop_a_year_without_an_operation_has_no_mean() {
     let means = all.means(&vehicle, &grid);
     assert_eq!((means[0].hvac_power_w, means[0].samples, means[0].unsolved), (None, 1, 1));
     assert_eq!(YearSamples::default().means(&vehicle, &grid)[0].samples, 0);
+}
+
+/// Every device, unequal windows, and a bus that has little to do with the one that its states are sought from.
+#[test]
+fn prop_a_year_sought_from_another_bus_is_the_same() {
+    let vehicle = Vehicle::default();
+    let windows = [(-1.0, 1.0), (0.2, 0.7), (-1.5, -0.5), (0.0, 0.0)];
+    let windows = windows.map(|(low, high)| ComfortWindow::new(low, high).expect("valid")).to_vec();
+    let grid = Grid::new(all_designs(), windows).expect("valid");
+    let mut all = YearSamples::default();
+    for (i, sample) in year().into_iter().step_by(17).enumerate() {
+        all.add((i % 12) as u8 + 1, sample);
+    }
+    let states = YearStates::new(&all, &vehicle, &grid);
+    let other =
+        Vehicle { conduction_shell_w_m2_k: 1.5, window_transmissivity: 0.9, other_heat_w: 4e3, ..vehicle.clone() };
+    for vehicle in [vehicle, other] {
+        let views = Arc::new(PassengerViews::new(&vehicle));
+        let bus = Bus { vehicle: vehicle.clone(), views, designs: grid.designs().to_vec() };
+        let near = states.means(&bus, |sample| *sample);
+        for (near, mean) in near.iter().zip(all.means(&vehicle, &grid)) {
+            let scale = mean.hvac_power_w.expect("solved").max(1.0);
+            let close = |a: Option<f64>, b: Option<f64>| (a.expect("solved") - b.expect("solved")).abs() < 1e-9 * scale;
+            assert!(close(near.hvac_power_w, mean.hvac_power_w), "{near:?} {mean:?}");
+            assert!(close(near.heating_power_w, mean.heating_power_w), "{near:?} {mean:?}");
+            assert!(close(near.cooling_power_w, mean.cooling_power_w), "{near:?} {mean:?}");
+            assert_eq!((near.samples, near.unsolved), (mean.samples, mean.unsolved));
+        }
+    }
 }

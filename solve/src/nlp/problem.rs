@@ -318,5 +318,6 @@ fn cop(curve: &Cop, lift: Dual2_64) -> Dual2_64 {
                 (None, _) => Dual2_64::from(rows[0].1),
             }
         }
+        Cop::Changed { of, scale, shift } => cop(of, lift) * *scale + *shift,
     }
 }

@@ -10,7 +10,7 @@ use super::quadratic::{Multipliers, Quadratic};
 use super::sqp::{self, End, Ended};
 use super::vote::VoteForm;
 use crate::Grid;
-use crate::blocks::in_blocks;
+use crate::blocks::{Block, in_blocks};
 
 /// Heat below this in kW is none: the least that a KKT residual of 1e-8 can tell from zero, with room to spare.
 const NO_HEAT_KW: f64 = 1e-6;
@@ -188,6 +188,7 @@ fn operation(end: &End, devices: Devices, vehicle: &Vehicle, views: &PassengerVi
         OperatingMode::Passive => 0.0,
         _ => 1e3 * end.power_kw - radiant_heater_power_w - air_curtain_power_w,
     };
+    let mean_radiant_temperature_k = cabin.mean_radiant_temperature_k(&temperatures);
     Operation {
         mode,
         devices,
@@ -196,14 +197,14 @@ fn operation(end: &End, devices: Devices, vehicle: &Vehicle, views: &PassengerVi
         air_curtain_power_w,
         air_unit_heat_w,
         temperatures,
-        mean_radiant_temperature_k: cabin.mean_radiant_temperature_k(&temperatures),
+        mean_radiant_temperature_k,
         pmv: end.vote,
-        standard_range: cabin.standard_range(&temperatures, end.vote),
+        standard_range: cabin.standard_range(temperatures.cabin_k, mean_radiant_temperature_k, end.vote),
     }
 }
 
 /// Samples that one task solves: some hundredths of a second each, so that a wave of them ends soon after it is asked to.
-const BLOCK: usize = 2;
+const BLOCK: Block = Block { samples: 2, a_thread: 4 };
 
 /// As [`crate::solve_blocks`], by the paper's method; `consume` also gets what each point has cost.
 pub fn nlp_blocks(
