@@ -90,6 +90,7 @@ def main():
         for stage, marker in zip(STAGES, "o^sD"):
             axis.plot(values, [row[stage] for row in rows], marker=marker, markersize=4, label=stage)
         axis.set(xlabel=name, xscale="log", yscale="log", xticks=values, xticklabels=values)
+        axis.set_yticks([0.25, 0.5, 1, 2, 4], ["0.25", "0.5", "1", "2", "4"])
         axis.minorticks_off()
         axis.grid(alpha=0.3)
     axes[0].set_ylabel("time in s")

@@ -104,6 +104,24 @@ pub enum Command {
     /// Extract setpoints for a controller on board from the optima, drive every mission by them and by published ones, and write
     /// the setpoints as files.
     Control(ControlArgs),
+    /// What the year depends on: each input of the section `sensitivity` at its low and its high value, and Sobol' indices of all
+    /// together; stored, and shown in the report.
+    Sensitivity(StudyArgs),
+    /// The same bus and timetable under the weather of other files, such as typical years of other cities (EPW, PVGIS) or the
+    /// reference year of the same place, beside its own. Exit status 1 where some hours have no weather there.
+    Climates {
+        /// Study file, or the folder of one.
+        study: PathBuf,
+        /// Weather files, each of a place of its own.
+        #[arg(required = true)]
+        files: Vec<PathBuf>,
+        /// Write climates.csv, all comfort windows, and climates.svg into this folder.
+        #[arg(long, value_name = "DIR")]
+        to: Option<PathBuf>,
+        /// Where the experiment database lies, instead of where the study file says.
+        #[arg(long, value_name = "FILE")]
+        db: Option<PathBuf>,
+    },
     /// Write the report: a page, and beside it every figure and table as files of their own.
     Report {
         #[command(flatten)]
@@ -203,6 +221,7 @@ impl Command {
                 | Self::Merge { .. }
                 | Self::Simulate(_)
                 | Self::Control(_)
+                | Self::Sensitivity(_)
                 | Self::Report { check: None, .. }
                 | Self::Run { .. }
                 | Self::Verify { .. }

@@ -119,6 +119,20 @@ fn dispatch(args: &Args, console: &Console) -> Result<Ending, Failure> {
             print::setpoints(&folder, &found)?;
             Ok(ending)
         }
+        Command::Sensitivity(study) => {
+            let study = open(study)?;
+            let ending = run(&study, &[Stage::Sensitivity, Stage::Report], options, console)?;
+            print::sensitivities(&pipeline::sensitivities(&study)?)?;
+            Ok(ending)
+        }
+        Command::Climates { study, files, to, db } => {
+            let study = open(&StudyArgs { study: Some(study.clone()), db: db.clone() })?;
+            let climates = pipeline::climates(&study, files)?;
+            if let Some(folder) = to {
+                pipeline::write_climates(&climates, folder)?;
+            }
+            print::climates(&climates, to.as_deref())
+        }
         Command::Report { study, check: None } => run(&open(study)?, &[Stage::Report], options, console),
         Command::Report { study, check: Some(folder) } => {
             print::report_check(folder, &pipeline::check_report(&open(study)?, folder)?)

@@ -83,7 +83,7 @@ impl Surroundings<'_> {
         let local = start.with_timezone(&self.zone);
         Ok(Sample {
             id: sample_id(segment.bus, start),
-            month: local.month() as u8,
+            month: month(start, self.zone),
             disturbances,
             solar_azimuth_rad: sun.azimuth_rad,
             interpolated_s: mean.interpolated_s,
@@ -113,6 +113,12 @@ fn excluded(segment: Segment, reason: String) -> ExcludedSegment {
         duration_s: segment.duration_s,
         reason,
     }
+}
+
+/// The month that an instant lies in by the clock on the wall, 1 … 12.
+#[must_use]
+pub fn month(instant: DateTime<Utc>, zone: Tz) -> u8 {
+    instant.with_timezone(&zone).month() as u8
 }
 
 /// Bus × 10¹⁰ + start in seconds since 1970.

@@ -12,6 +12,7 @@ use study::{Study, keys};
 use crate::control::own;
 use crate::energy;
 use crate::record::input_hash;
+use crate::sensitivity::sensitivity_key;
 use crate::{Inputs, PROGRAM_VERSION, PipelineError};
 
 /// Something stored was made from something else than what there is now.
@@ -70,11 +71,13 @@ pub(crate) fn optima(study: &Study, store: &mut Store) -> Result<Option<Stale>, 
     }
 }
 
-/// Key of all optima of a study: samples, designs and windows in their order, what the vehicle can give.
+/// Key of all optima of a study: samples, designs and windows in their order, what the vehicle can give, variants.
 pub(crate) fn solve_key(study: &Study, store: &mut Store) -> Result<String, PipelineError> {
     let mut parts: Vec<String> = study.design_rows.iter().map(|d| format!("{} {}", d.name, d.design_key)).collect();
     parts.extend(study.grid.windows().iter().map(|w| format!("{} {}", w.pmv_min(), w.pmv_max())));
     parts.push(format!("{:?}", energy::power_limits_w(study)));
+    parts.extend(study.economics.iter().map(|economics| format!("{economics:?}")));
+    parts.extend(study.variants.iter().map(|v| format!("{} {:?} {:?}", v.name, v.designs, v.overrides)));
     parts.extend(store.sample_keys()?.into_iter().map(|(id, key)| format!("{id} {key}")));
     Ok(keys::hash(&parts.iter().map(String::as_str).collect::<Vec<_>>()))
 }
@@ -99,5 +102,9 @@ pub(crate) fn report_key(study: &Study, inputs: &Inputs, store: &mut Store) -> R
     let controls = control_key(study, inputs, store)?;
     let missing: Vec<String> = store.missing_files()?.into_iter().collect();
     let inputs = input_hash(store)?;
-    Ok(keys::hash(&[&study.hash, &simulations, &controls, &inputs, &missing.join(" "), PROGRAM_VERSION]))
+    // One of something else is not shown.
+    let sensitivity = sensitivity_key(study, store)?;
+    let sensitivity = store.stage(RecordedStage::Sensitivity)?.is_some_and(|record| record.key == sensitivity);
+    let stored = format!("{} {sensitivity}", missing.join(" "));
+    Ok(keys::hash(&[&study.hash, &simulations, &controls, &inputs, &stored, PROGRAM_VERSION]))
 }

@@ -6,12 +6,12 @@ use solve::nlp::{DoorLaw, Effort, Surrogate, VoteForm, nlp_blocks};
 use solve::{Grid, Method, solve_blocks};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
-use store::{MissingOptima, NewOptimum, RecordedStage, StageRecord, Store, StoredGrid};
-use study::Study;
+use store::{Beside, EconomicInput, MissingOptima, NewOptimum, RecordedStage, StageRecord, Store, StoredGrid};
+use study::{DesignCost, Study};
 
 use crate::status::status_counts;
 use crate::{PipelineError, Progress, Work};
-use crate::{energy, freshness, shards};
+use crate::{energy, freshness, shards, variants};
 
 /// Finds what is missing; with a folder of `shards`, what is in there is taken from it first.
 pub(crate) fn solve(
@@ -58,7 +58,8 @@ pub(crate) fn solve(
     let counts = store.status_counts()?;
     let result = serde_json::json!([counts.solved, counts.infeasible, counts.not_converged]).to_string();
     let energy = energy::energy(study, store, &grid, &stored, progress)?;
-    store.complete_optima(&StageRecord { key, result }, &grid, &energy)?;
+    let beside = Beside { variants: variants::variants(study, &stored)?, costs: costs(study) };
+    store.complete_optima(&StageRecord { key, result }, &grid, &energy, &beside)?;
     if total.programs > 0 {
         progress.info(&format!(
             "{} nonlinear programs, {:.2} quadratic subproblems each, largest KKT residual {:.1e}",
@@ -68,6 +69,23 @@ pub(crate) fn solve(
         ));
     }
     work(total.points, samples, &per_sample(&gaps, points), store)
+}
+
+/// What the study says of the designs' costs.
+fn costs(study: &Study) -> Vec<EconomicInput> {
+    let Some(economics) = &study.economics else { return Vec::new() };
+    let of_design = |cost: &DesignCost| EconomicInput {
+        design: study.design_rows[cost.design].name.clone(),
+        currency: economics.currency.clone(),
+        price_per_kwh: economics.price_per_kwh,
+        carbon_kg_per_kwh: economics.carbon_kg_per_kwh,
+        interest: economics.interest,
+        investment: cost.investment,
+        maintenance_per_year: cost.maintenance_per_year,
+        life_years: cost.life_years,
+        present_value_factor: economics.present_value_factor(cost.life_years),
+    };
+    economics.designs.iter().map(of_design).collect()
 }
 
 fn work(points: usize, samples: usize, per_sample: &str, store: &mut Store) -> Result<Work, PipelineError> {

@@ -11,7 +11,7 @@ use study::assumptions::assumptions;
 use crate::canyon::shade_in_words;
 use crate::lock::RunLock;
 use crate::record::input_hash;
-use crate::{Inputs, PROGRAM_VERSION, PipelineError, Progress, Work, folder, freshness};
+use crate::{Inputs, PROGRAM_VERSION, PipelineError, Progress, Work, folder, freshness, sensitivity};
 
 /// How long another report may take that is being written to the same folder.
 const LONGEST_REPORT: Duration = Duration::from_secs(60);
@@ -191,5 +191,9 @@ pub(crate) fn content(study: &Study, store: &mut Store) -> Result<StudyReport, P
         control_traces: store.control_traces()?,
         control_trace_points: store.control_trace_points()?,
         control_failures: store.control_failures()?,
+        economics: store.economics()?,
+        variants: store.variant_years()?,
+        variant_settings: store.variant_settings()?,
+        sensitivities: sensitivity::fresh(study, store)?,
     })
 }

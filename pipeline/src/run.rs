@@ -10,7 +10,7 @@ use crate::lock::RunLock;
 use crate::record::{input_hash, now};
 use crate::{
     Inputs, PROGRAM_VERSION, PipelineError, Progress, StageEnd, Summary, Work, control, freshness, ingest, metrics,
-    news, open, optima, report, samples, simulations,
+    news, open, optima, report, samples, sensitivity, simulations,
 };
 
 /// One step of a run; each one builds on what the steps before it have stored.
@@ -28,10 +28,12 @@ pub enum Stage {
     Control,
     /// Rows into tables and figures.
     Report,
+    /// Samples into what the year depends on; for whoever asks, no part of a whole run.
+    Sensitivity,
 }
 
 impl Stage {
-    /// All of them in their order.
+    /// Those of a whole run in their order.
     pub const ALL: [Self; 6] = [Self::Ingest, Self::Shade, Self::Solve, Self::Simulate, Self::Control, Self::Report];
 
     /// The name of its command.
@@ -44,6 +46,7 @@ impl Stage {
             Self::Simulate => "simulate",
             Self::Control => "control",
             Self::Report => "report",
+            Self::Sensitivity => "sensitivity",
         }
     }
 }
@@ -197,6 +200,10 @@ impl Running<'_> {
             },
             Stage::Simulate => simulations::simulate(study, inputs, store, progress),
             Stage::Control => control::control(study, inputs, store, progress),
+            Stage::Sensitivity => match freshness::samples(inputs, store)?.or(freshness::optima(study, store)?) {
+                Some(stale) => Err(stale.into()),
+                None => sensitivity::sensitivity(study, store, progress),
+            },
             Stage::Report => {
                 let reported = if self.run_id.is_none() {
                     report::say_stale(study, inputs, store, progress)?;

@@ -16,6 +16,7 @@ from ._busclimate import (
     parameter_study,
     pmv,
     read_mission,
+    sensitivity,
     simulate,
 )
 
@@ -31,5 +32,6 @@ __all__ = [
     "parameter_study",
     "pmv",
     "read_mission",
+    "sensitivity",
     "simulate",
 ]

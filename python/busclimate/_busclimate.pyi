@@ -110,6 +110,16 @@ def read_mission(
     door_open_share: float = 0.6,
     keep_partial: bool = False,
 ) -> Table: ...
+def sensitivity(
+    samples: ArrowStream | ArrowBatch,
+    inputs: Mapping[str, Sequence[float] | Mapping[str, float]] | None = None,
+    designs: Mapping[str, Mapping[str, Any]] | None = None,
+    *,
+    pmv_limit: float = 1.0,
+    points: int = 256,
+    seed: int = 1,
+    vehicle: Mapping[str, Any] | None = None,
+) -> tuple[Table, Table, Table]: ...
 def simulate(
     samples: ArrowStream | ArrowBatch,
     minutes: ArrowStream | ArrowBatch,

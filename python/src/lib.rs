@@ -11,6 +11,7 @@ mod missions;
 mod optimize;
 mod parameters;
 mod samples;
+mod sensitivity;
 mod settings;
 mod simulate;
 mod study;
@@ -31,6 +32,7 @@ fn _busclimate(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(optimize::model_key, module)?)?;
     module.add_function(wrap_pyfunction!(optimize::optimize, module)?)?;
     module.add_function(wrap_pyfunction!(parameters::parameter_study, module)?)?;
+    module.add_function(wrap_pyfunction!(sensitivity::sensitivity, module)?)?;
     module.add_function(wrap_pyfunction!(simulate::simulate, module)?)?;
     Ok(())
 }

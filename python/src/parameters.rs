@@ -78,7 +78,7 @@ pub fn parameter_study(
     })
 }
 
-fn year(samples: AnyRecordBatch) -> PyResult<YearSamples> {
+pub fn year(samples: AnyRecordBatch) -> PyResult<YearSamples> {
     let (mut year, mut before) = (YearSamples::default(), 0);
     for batch in samples.into_table()?.into_inner().0 {
         let months = column("samples", &batch, "month")?;

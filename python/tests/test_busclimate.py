@@ -113,6 +113,26 @@ def test_a_parameter_study_gives_the_years_of_the_program(study: bc.Study) -> No
     assert wrong["status"].str.contains("shell_area_m2").all() and wrong["hvac_power_w"].is_null().all()
 
 
+def test_what_the_year_depends_on_is_that_of_the_years(study: bc.Study) -> None:
+    """A set of inputs is the year of a bus with those constants; indices are those of the values of the sets."""
+    samples = study.samples()
+    inputs = {"conduction_shell_w_m2_k": [4.0, 8.0], "heating_cop_scale": {"mean": 1.0, "sd": 0.05}}
+    swings, indices, sets = (pl.DataFrame(t) for t in bc.sensitivity(samples, inputs, points=32, seed=3))
+    assert (swings.height, indices.height, sets.height) == (19 * 2, 19 * 2, 32 * 4)
+    given = sets.select("set_id", "conduction_shell_w_m2_k").filter(pl.col("set_id") < 8)
+    years = pl.DataFrame(bc.parameter_study(given, samples, windows=[1.0])).filter(pl.col("design") == "ptc")
+    found = sets.filter(pl.col("set_id") < 8)["ptc hvac_power_w"]
+    assert ((years["hvac_power_w"] / found - 1.0).abs() < 1e-9).all()
+    of_ptc = indices.filter((pl.col("design") == "ptc") & (pl.col("quantity") == "hvac_power_w"))
+    assert of_ptc["total_order"].to_list()[1] == 0.0 and of_ptc["first_order"][0] > 0.8
+    base = swings.filter((pl.col("design") == "hp") & (pl.col("quantity") == "hvac_power_w"))
+    assert (base["low_value"] != base["high_value"]).all() and base["base_value"].n_unique() == 1
+    with pytest.raises(bc.StudyError, match="conduction_shell is no input that can vary; did you mean conduction_shell_w_m2_k"):
+        bc.sensitivity(samples, {"conduction_shell": [1.0, 2.0]})
+    with pytest.raises(bc.StudyError, match="inputs: relative_humidity = -2"):
+        bc.sensitivity(samples, {"relative_humidity": [-2.0, 0.4]})
+
+
 def test_tables_are_those_of_the_dictionary(study: bc.Study) -> None:
     """Every tool takes a table without more."""
     table = study.table("annual_average")

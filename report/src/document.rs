@@ -1,6 +1,6 @@
 //! What a report consists of, before anything is rendered: sections with prose, tables and figures as data.
 
-use crate::figure::{Chart, HeatFlowFigure};
+use crate::figure::{Bars, Chart, HeatFlowFigure};
 
 /// A section. Its blocks come one after the other; `tables` are those that spreadsheets get, with every digit.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -55,6 +55,7 @@ pub(crate) struct Figure {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Picture {
     Chart(Box<Chart>),
+    Bars(Box<Bars>),
     HeatFlow(Box<HeatFlowFigure>),
 }
 
@@ -152,6 +153,10 @@ impl Block {
 
     pub fn chart(file: &'static str, caption: impl Into<String>, chart: Chart) -> Self {
         Self::Figure(Figure { file, caption: caption.into(), picture: Picture::Chart(Box::new(chart)) })
+    }
+
+    pub fn bars(file: &'static str, caption: impl Into<String>, bars: Bars) -> Self {
+        Self::Figure(Figure { file, caption: caption.into(), picture: Picture::Bars(Box::new(bars)) })
     }
 }
 

@@ -5,6 +5,7 @@
 //! `render` turns sections into Markdown and CSV; `figure` draws.
 
 mod answer;
+mod climates;
 mod document;
 mod figure;
 mod headline;
@@ -14,6 +15,7 @@ mod section;
 mod study_report;
 mod words;
 
+pub use climates::{Climate, Climates};
 pub use figure::{HeatFlowFigure, heat_flow_svg};
 pub use headline::headline;
 pub use section::{PaperFinding, Verdict, nearest_windows, paper_findings};
@@ -31,7 +33,7 @@ pub struct ReportFile {
 }
 
 /// The names of all files that a report can have.
-pub const FILES: [&str; 72] = [
+pub const FILES: [&str; 82] = [
     "report.html",
     "report.md",
     "aircurtain_setpoint.svg",
@@ -58,6 +60,7 @@ pub const FILES: [&str; 72] = [
     "data_sample_values.csv",
     "design_interval.csv",
     "designs.csv",
+    "economics.csv",
     "excluded.csv",
     "heat_flow_cold.svg",
     "heat_flow_cold_values.csv",
@@ -91,6 +94,9 @@ pub const FILES: [&str; 72] = [
     "reduction_values.csv",
     "scenarios_overview.svg",
     "scenarios_overview_values.csv",
+    "sensitivity_index.csv",
+    "sensitivity_result.csv",
+    "sensitivity_swing.csv",
     "setpoint_profile.csv",
     "shadow_fraction.svg",
     "shadow_fraction_values.csv",
@@ -101,9 +107,15 @@ pub const FILES: [&str; 72] = [
     "simulation_classes.csv",
     "simulation_failures.csv",
     "simulation_values.csv",
+    "sobol_indices.svg",
+    "sobol_indices_values.csv",
     "sources.csv",
     "temperature_setpoints.svg",
     "temperature_setpoints_values.csv",
+    "tornado.svg",
+    "tornado_values.csv",
+    "variant_annual.csv",
+    "variant_setting.csv",
 ];
 
 /// The report could not be made.

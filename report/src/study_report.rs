@@ -5,9 +5,9 @@ use chrono_tz::Tz;
 use ingest::FileRecord;
 use store::{
     AnnualInterval, AnnualRow, Cloud, ControlClass, ControlPoint, ControlTrace, ControlYear, DesignInterval, DesignRow,
-    DisturbanceBin, DrivenEnds, Ends, EnergyRow, ExclusionCount, LeftOutRow, LimitShare, MissionTrace, MonthRow,
-    MonthlyRow, Outside, SetpointRow, SimulatedClass, SimulatedYear, SimulationFailure, SpreadRow, StatusCounts,
-    TraceWindow, VoteBin,
+    DisturbanceBin, DrivenEnds, EconomicRow, Ends, EnergyRow, ExclusionCount, LeftOutRow, LimitShare, MissionTrace,
+    MonthRow, MonthlyRow, Outside, Sensitivities, SetpointRow, SimulatedClass, SimulatedYear, SimulationFailure,
+    SpreadRow, StatusCounts, TraceWindow, VariantSetting, VariantYear, VoteBin,
 };
 use study::assumptions::Assumption;
 
@@ -95,6 +95,14 @@ pub struct StudyReport {
     pub control_trace_points: Vec<(ControlPoint, Option<f64>, f64)>,
     /// Missions that controllers cannot drive: mission, design, reason.
     pub control_failures: Vec<[String; 3]>,
+    /// What comfort costs by the user's figures; empty where the study has none.
+    pub economics: Vec<EconomicRow>,
+    /// Buses that differ, in all windows; empty where the study has none.
+    pub variants: Vec<VariantYear>,
+    /// What they override.
+    pub variant_settings: Vec<VariantSetting>,
+    /// What the year depends on; empty where nobody has asked.
+    pub sensitivities: Sensitivities,
 }
 
 impl StudyReport {

@@ -78,7 +78,9 @@ impl Input {
     #[must_use]
     pub fn around(name: &str, value: f64, share: f64) -> Self {
         let half = if value == 0.0 { share } else { value.abs() * share };
-        Self { name: name.to_owned(), spread: Spread::Uniform { low: value - half, high: value + half } }
+        // As it would be typed, without the rounding error of a product.
+        let typed = |value: f64| format!("{value:.12e}").parse().unwrap_or(value);
+        Self { name: name.to_owned(), spread: Spread::Uniform { low: typed(value - half), high: typed(value + half) } }
     }
 
     /// Checks that the spread is one.

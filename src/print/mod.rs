@@ -1,8 +1,12 @@
 //! What came of a command, in words on stdout.
 
+mod climates;
+mod sensitivity;
 mod shown;
 mod status;
 
+pub use climates::climates;
+pub use sensitivity::sensitivities;
 pub use shown::shown;
 pub use status::{plan, status};
 

@@ -40,7 +40,7 @@ const SIMULATED: Table = ("simulated_mission", &["source_file_id", "design_id", 
 const CONTROLLED: Table = ("controlled_mission", &["source_file_id", "design_id", "window_id", "controller"]);
 const OPTIMA: Table = ("optimum_point", &["sample_id", "design_id", "window_id"]);
 /// Tables of averages, with their keys.
-const AVERAGES: [(&str, &str); 31] = [
+const AVERAGES: [(&str, &str); 38] = [
     ("simulation_month", "design_id, window_id, controller, month"),
     ("simulation_class_month", "design_id, window_id, class_order, month"),
     ("monthly_average", "design, pmv_min, pmv_max, month"),
@@ -72,6 +72,13 @@ const AVERAGES: [(&str, &str); 31] = [
     ("control_class", "design, pmv_min, pmv_max, controller, class_order"),
     ("control_outside", "design, controller, profile_pmv_min, profile_pmv_max, pmv_min, pmv_max"),
     ("control_trace", "design, pmv_min, pmv_max, controller, minute"),
+    ("variant_setting", "variant, name"),
+    ("variant_annual", "variant, design, pmv_min, pmv_max"),
+    ("sensitivity_result", "design, pmv_min, pmv_max, quantity"),
+    ("sensitivity_swing", "design, pmv_min, pmv_max, quantity, input"),
+    ("sensitivity_index", "design, pmv_min, pmv_max, quantity, input"),
+    ("economic_input", "design"),
+    ("economics", "design, pmv_min, pmv_max"),
 ];
 /// Rows that get their checks in one statement.
 const SEALED_AT_ONCE: usize = 256;

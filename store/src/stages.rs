@@ -17,6 +17,8 @@ pub enum RecordedStage {
     Simulate,
     /// All missions under causal controllers.
     Control,
+    /// What the year depends on.
+    Sensitivity,
     /// The files of the report.
     Report,
 }
@@ -28,6 +30,7 @@ impl RecordedStage {
             Self::Solve => "solve",
             Self::Simulate => "simulate",
             Self::Control => "control",
+            Self::Sensitivity => "sensitivity",
             Self::Report => "report",
         }
     }

@@ -14,7 +14,7 @@ use proptest::prelude::*;
 use solve::Method;
 use std::collections::BTreeSet;
 use store::{
-    Counts, DesignRow, Energy, MissingOptima, NewOptimum, RecordedStage, RunEnd, StageRecord, Store, StoreError,
+    Beside, Counts, DesignRow, Energy, MissingOptima, NewOptimum, RecordedStage, RunEnd, StageRecord, Store, StoreError,
 };
 use tempfile::TempDir;
 
@@ -178,6 +178,7 @@ fn filled(store: &mut Store) {
             &StageRecord { key: "k".to_owned(), result: "[]".to_owned() },
             &change.grid,
             &Energy::default(),
+            &Beside::default(),
         )
         .unwrap();
     let stored = store.optima(&change.grid, 1, 4).unwrap();
@@ -341,7 +342,12 @@ fn prop_averages_are_those_of_the_last_complete_stage_and_only_changed_months_ar
     let optima = [0, 1].map(|d| (4, solved(d, OperatingMode::Cooling, 700.0)));
     store.put_optima(&grid, optima.iter().map(|(id, o)| NewOptimum::of(*id, o))).unwrap();
     store
-        .complete_optima(&StageRecord { key: "k2".to_owned(), result: "[]".to_owned() }, &grid, &Energy::default())
+        .complete_optima(
+            &StageRecord { key: "k2".to_owned(), result: "[]".to_owned() },
+            &grid,
+            &Energy::default(),
+            &Beside::default(),
+        )
         .unwrap();
     let monthly: Vec<_> = store.monthly().unwrap().iter().map(|m| m.hvac_power_w).collect();
     assert_eq!(monthly, [2000.0, 700.0, 750.0, 700.0].map(Some));

@@ -8,6 +8,7 @@ use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{Error as _, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 use simulate::Dynamics;
+use std::collections::BTreeMap;
 use std::fmt;
 use std::marker::PhantomData;
 use std::path::Path;
@@ -48,6 +49,14 @@ pub struct StudyFile {
     #[serde(default = "default_designs", deserialize_with = "in_file_order")]
     #[schemars(schema_with = "crate::schema::tables_of::<Design>")]
     pub designs: Vec<(String, Design)>,
+    #[serde(default, deserialize_with = "in_file_order", skip_serializing_if = "Vec::is_empty")]
+    #[schemars(schema_with = "crate::schema::variants")]
+    pub variants: Vec<(String, BTreeMap<String, Override>)>,
+    #[serde(default, skip_serializing_if = "Sensitivity::is_default")]
+    pub sensitivity: Sensitivity,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Economics")]
+    pub economics: Option<Economics>,
 }
 
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
@@ -271,6 +280,79 @@ pub struct Design {
     pub cooling_cop: Option<Cop>,
 }
 
+/// What a variant says: the value of an input, or under `designs` the names of those that it is for.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Override {
+    Value(f64),
+    Designs(Vec<String>),
+}
+
+/// Which inputs vary, and how the year is looked at.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Sensitivity {
+    pub pmv_limit: Option<f64>,
+    pub points: u32,
+    pub seed: u32,
+    #[serde(deserialize_with = "in_file_order")]
+    #[schemars(schema_with = "crate::schema::inputs_of::<Spread>")]
+    pub inputs: Vec<(String, Spread)>,
+}
+
+impl Default for Sensitivity {
+    fn default() -> Self {
+        Self { pmv_limit: None, points: 256, seed: 1, inputs: Vec::new() }
+    }
+}
+
+impl Sensitivity {
+    fn is_default(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
+/// What electricity and designs cost.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Economics {
+    pub currency: String,
+    pub price_per_kwh: f64,
+    pub carbon_kg_per_kwh: Option<f64>,
+    pub interest: f64,
+    pub life_years: f64,
+    #[serde(deserialize_with = "in_file_order")]
+    #[schemars(schema_with = "crate::schema::tables_of::<DesignCost>")]
+    pub designs: Vec<(String, DesignCost)>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct DesignCost {
+    pub investment: f64,
+    #[serde(default)]
+    pub maintenance_per_year: f64,
+    pub life_years: Option<f64>,
+}
+
+/// `[low, high]`, `{ mean = 1.0, sd = 0.1 }` or `{ low = 0.8, mode = 1.0, high = 1.1 }`.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Spread {
+    Ends([f64; 2]),
+    Named(NamedSpread),
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct NamedSpread {
+    pub mean: Option<f64>,
+    pub sd: Option<f64>,
+    pub low: Option<f64>,
+    pub mode: Option<f64>,
+    pub high: Option<f64>,
+}
+
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Heating {
@@ -400,6 +482,54 @@ impl<'de> Deserialize<'de> for Cop {
                 Vec::deserialize(SeqAccessDeserializer::new(list))
                     .map(Cop::Table)
                     .map_err(|e| A::Error::custom(format!("{e}; a COP table is a list of pairs [lift in K, COP]")))
+            }
+        }
+        source.deserialize_any(Either)
+    }
+}
+
+impl<'de> Deserialize<'de> for Override {
+    fn deserialize<D: Deserializer<'de>>(source: D) -> Result<Self, D::Error> {
+        struct Either;
+        impl<'de> Visitor<'de> for Either {
+            type Value = Override;
+
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str("a number, or under `designs` a list of names")
+            }
+
+            fn visit_f64<E: serde::de::Error>(self, value: f64) -> Result<Override, E> {
+                Ok(Override::Value(value))
+            }
+
+            fn visit_i64<E: serde::de::Error>(self, value: i64) -> Result<Override, E> {
+                Ok(Override::Value(value as f64))
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<Override, A::Error> {
+                Vec::deserialize(SeqAccessDeserializer::new(list)).map(Override::Designs)
+            }
+        }
+        source.deserialize_any(Either)
+    }
+}
+
+impl<'de> Deserialize<'de> for Spread {
+    fn deserialize<D: Deserializer<'de>>(source: D) -> Result<Self, D::Error> {
+        struct Either;
+        impl<'de> Visitor<'de> for Either {
+            type Value = Spread;
+
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str("[low, high], { mean = 1.0, sd = 0.1 } or { low = 0.8, mode = 1.0, high = 1.1 }")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Spread, A::Error> {
+                NamedSpread::deserialize(MapAccessDeserializer::new(map)).map(Spread::Named)
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<Spread, A::Error> {
+                <[f64; 2]>::deserialize(SeqAccessDeserializer::new(list)).map(Spread::Ends)
             }
         }
         source.deserialize_any(Either)

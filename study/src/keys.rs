@@ -120,6 +120,15 @@ pub fn settings(study: &Study, stage: &str) -> BTreeMap<String, String> {
             }
             settings.insert("comfort".to_owned(), windows(&mut (0..study.grid.windows().len())));
             settings.insert("method".to_owned(), study.method.name().to_owned());
+            if let Some(economics) = &study.economics {
+                settings.insert("economics".to_owned(), format!("{economics:?}"));
+            }
+            for variant in &study.variants {
+                let of_variant = |key: &str| format!("variants.{:?}.{key}", variant.name);
+                let designs: Vec<&str> = variant.designs.iter().map(|d| study.design_rows[*d].name.as_str()).collect();
+                settings.insert(of_variant("designs"), designs.join(", "));
+                settings.extend(variant.overrides.iter().map(|(key, value)| (of_variant(key), value.to_string())));
+            }
             settings
         }
         "simulate" => {

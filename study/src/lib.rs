@@ -4,6 +4,7 @@
 //! Nothing here reads missions or weather, nothing below knows of TOML.
 
 pub mod assumptions;
+mod economics;
 mod file;
 pub mod keys;
 mod ready;
@@ -11,6 +12,7 @@ mod schema;
 pub mod settings;
 mod sources;
 pub mod template;
+mod variants;
 
 use cabin::{ComfortWindow, Vehicle};
 use chrono_tz::Tz;
@@ -22,9 +24,11 @@ use solve::{Grid, Method, certify};
 use std::path::{Path, PathBuf};
 use store::DesignRow;
 
+pub use economics::{DesignCost, Economics};
 pub use file::StudyFileError;
 pub use schema::{SCHEMA_FILE, schema};
 pub use sources::Source;
+pub use variants::{SensitivityStudy, USUAL_SHARE, Variant};
 
 use file::StudyFile;
 
@@ -81,6 +85,12 @@ pub struct Study {
     pub grid: Grid,
     /// The grid's designs as the database keeps them.
     pub design_rows: Vec<DesignRow>,
+    /// Buses that stand beside this one.
+    pub variants: Vec<Variant>,
+    /// What electricity and designs cost; `None` where the study does not ask.
+    pub economics: Option<Economics>,
+    /// What `sensitivity` varies.
+    pub sensitivity: SensitivityStudy,
     /// How optima are found.
     pub method: Method,
     /// BLAKE3 of the study with all defaults, without the places of its results.
@@ -187,6 +197,9 @@ impl Study {
             dynamics: file.dynamics,
             simulated_windows,
             control,
+            variants: variants::variants(file, &grid)?,
+            sensitivity: variants::sensitivity(file, &grid)?,
+            economics: file.economics.as_ref().map(|typed| economics::economics(typed, &grid)).transpose()?,
             grid,
             design_rows,
             hash: keys::study_hash(file),

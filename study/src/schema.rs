@@ -2,6 +2,7 @@
 
 use ingest::weather::WeatherFormat;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use sensitivity::Variation;
 use serde::Serialize;
 use serde_json::{Map, Value};
 
@@ -33,6 +34,20 @@ pub(crate) fn numbers_of<T: Default + Serialize>(_: &mut SchemaGenerator) -> Sch
 pub(crate) fn tables_of<T: JsonSchema>(generator: &mut SchemaGenerator) -> Schema {
     let inner = generator.subschema_for::<T>();
     json_schema!({ "type": "object", "additionalProperties": inner })
+}
+
+/// A value for each input that can vary.
+pub(crate) fn inputs_of<T: JsonSchema>(generator: &mut SchemaGenerator) -> Schema {
+    let inner = generator.subschema_for::<T>().to_value();
+    let properties: Map<String, Value> = Variation::names().into_iter().map(|name| (name, inner.clone())).collect();
+    json_schema!({ "type": "object", "properties": properties, "additionalProperties": false })
+}
+
+/// Tables of inputs with the designs that they are for.
+pub(crate) fn variants(generator: &mut SchemaGenerator) -> Schema {
+    let mut variant = inputs_of::<f64>(generator).to_value();
+    variant["properties"]["designs"] = serde_json::json!({ "type": "array", "items": { "type": "string" } });
+    json_schema!({ "type": "object", "additionalProperties": variant })
 }
 
 /// One of the formats of weather.

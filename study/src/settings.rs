@@ -116,9 +116,10 @@ fn source(name: &str, typed: bool) -> &'static str {
 fn stage(name: &str) -> &'static str {
     match name.split('.').next().unwrap_or_default() {
         "location" | "weather" | "shadow" => "shade",
-        "comfort" | "vehicle" | "designs" => "solve",
+        "comfort" | "vehicle" | "designs" | "variants" | "economics" => "solve",
         "simulation" | "dynamics" => "simulate",
         "control" => "control",
+        "sensitivity" => "sensitivity",
         _ => "ingest",
     }
 }

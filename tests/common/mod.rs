@@ -15,7 +15,7 @@ use store::Store;
 use tempfile::TempDir;
 
 /// All that a database says of a study, but for when and by which run.
-pub const CONTENT: [&str; 38] = [
+pub const CONTENT: [&str; 45] = [
     "SELECT * FROM sample",
     "SELECT * FROM optimum",
     "SELECT design, pmv_min, pmv_max, month, hvac_power_w, heating_power_w, cooling_power_w, sample_count, unsolved_count,
@@ -74,6 +74,21 @@ pub const CONTENT: [&str; 38] = [
         relative_difference_high FROM simulation_interval",
     "SELECT design, pmv_min, pmv_max, controller, mean_hvac_power_low_w, mean_hvac_power_high_w, relative_difference_low,
         relative_difference_high FROM control_interval",
+    "SELECT variant, name, value, base_value FROM variant_setting",
+    "SELECT variant, variant_order, design, pmv_min, pmv_max, hvac_power_w, heating_power_w, cooling_power_w,
+        base_hvac_power_w, base_heating_power_w, base_cooling_power_w, difference_w, relative_change, sample_count,
+        unsolved_count FROM variant_annual",
+    "SELECT design, pmv_min, pmv_max, quantity, base_value, mean_value, sd_value, low_value, high_value, set_count,
+        unsolved_count, seed FROM sensitivity_result",
+    "SELECT design, pmv_min, pmv_max, quantity, input, input_order, input_base, input_low, input_high, base_value,
+        low_value, high_value FROM sensitivity_swing",
+    "SELECT design, pmv_min, pmv_max, quantity, input, input_order, first_order, first_order_low, first_order_high,
+        total_order, total_order_low, total_order_high FROM sensitivity_index",
+    "SELECT design, design_order, currency, price_per_kwh, carbon_kg_per_kwh, interest, investment, maintenance_per_year,
+        life_years, present_value_factor FROM economic_input",
+    "SELECT design, pmv_min, pmv_max, currency, kwh_per_bus_year, energy_cost_per_year, annual_cost, net_present_cost,
+        emissions_kg_per_year, reference_design, saved_kwh_per_year, saved_emissions_kg_per_year, extra_cost_per_year,
+        cost_per_saved_kwh, break_even_price_per_kwh FROM economics",
     "SELECT * FROM excluded_segment",
     "SELECT path, kind, blake3, bytes, rows, first_utc, last_utc, outcome, reading_key FROM source_file",
     "SELECT f.path, q.kind, q.count, q.line, q.column_name, q.message, q.position

@@ -118,6 +118,13 @@ impl WeatherFormat {
     }
 }
 
+/// Latitude and longitude in degrees of the place that a file of a format is of, from the beginning of its text; `None` where
+/// it does not say.
+#[must_use]
+pub fn place_of(text: &str, format: &WeatherFormat) -> Option<[f64; 2]> {
+    format.reader().layout(text).ok().flatten()?.place
+}
+
 /// How weather becomes a series.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WeatherOptions {

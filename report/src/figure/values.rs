@@ -185,7 +185,7 @@ fn with_interval(value: Option<f64>, ends: Option<[f64; 2]>) -> String {
     }
 }
 
-fn with_ends(value: Option<f64>, ends: Option<[f64; 2]>) -> String {
+pub(super) fn with_ends(value: Option<f64>, ends: Option<[f64; 2]>) -> String {
     match (value, ends) {
         (Some(value), Some([low, high])) => {
             format!("{} ({} … {})", significant(value), significant(low), significant(high))

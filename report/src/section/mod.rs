@@ -8,6 +8,7 @@ mod control_classes;
 mod control_front;
 mod control_mission;
 mod designs;
+mod economics;
 mod findings;
 mod front;
 mod inputs;
@@ -25,10 +26,12 @@ mod quality;
 mod reduction;
 mod repeat;
 mod scenarios;
+mod sensitivity;
 mod setpoints;
 mod simulation;
 mod simulation_classes;
 mod sureness;
+mod variants;
 
 pub use findings::{PaperFinding, Verdict, paper_findings};
 pub use setpoints::nearest_windows;
@@ -48,6 +51,9 @@ pub(crate) fn all(study: &StudyReport) -> Vec<Section> {
         sureness::section(study),
         monthly::section(study),
         limits::section(study),
+        economics::section(study),
+        variants::section(study),
+        sensitivity::section(study),
         scenarios::section(study),
         simulation::section(study),
         missions::section(study),

@@ -12,12 +12,12 @@ use crate::checks::{commit, seal_averages};
 use crate::row::begin;
 use crate::stages::{RecordedStage, StageRecord, record_stage};
 use crate::{
-    ControlTrace, Driven, DrivenEnds, Energy, SetpointRow, Store, StoreError, StoredGrid, control_views, driven,
-    energy, setpoints, uncertainty,
+    ControlTrace, Driven, DrivenEnds, EconomicInput, Energy, NewVariant, SetpointRow, Store, StoreError, StoredGrid,
+    control_views, driven, economics, energy, setpoints, uncertainty, variants,
 };
 
 impl Store {
-    /// Completes the optima: renews the averages of the months that have changed, and records the stage.
+    /// Completes the optima: renews the averages of the months that have changed and the variants, and records the stage.
     ///
     /// # Errors
     /// [`StoreError::Refused`], [`StoreError::Damaged`].
@@ -26,6 +26,7 @@ impl Store {
         record: &StageRecord,
         grid: &StoredGrid,
         energy: &Energy,
+        beside: &Beside,
     ) -> Result<(), StoreError> {
         let renew = [
             "DELETE FROM monthly_average WHERE month IN (SELECT month FROM stale_month)",
@@ -39,11 +40,13 @@ impl Store {
             optima::LIMIT_SHARE,
             "DELETE FROM annual_energy",
             optima::ANNUAL_ENERGY,
+            "DELETE FROM economics",
+            optima::ECONOMICS,
             "DELETE FROM unmet_demand",
             optima::UNMET_DEMAND,
             "DELETE FROM stale_month",
         ];
-        self.complete(RecordedStage::Solve, record, &renew, New::Optima(grid, energy))
+        self.complete(RecordedStage::Solve, record, &renew, New::Optima(grid, energy, beside))
     }
 
     /// Completes the simulations: renews what they come to in the year and by class, and records the stage.
@@ -112,9 +115,11 @@ impl Store {
             let mut tx = begin(c).await?;
             let run_id = last_run(&mut tx).await?;
             match new {
-                New::Optima(grid, energy) => {
+                New::Optima(grid, energy, beside) => {
                     energy::put(&mut tx, run_id, grid, energy).await?;
                     uncertainty::put(&mut tx, run_id, grid, &energy.uncertainty).await?;
+                    variants::put(&mut tx, run_id, grid, &beside.variants).await?;
+                    economics::put(&mut tx, run_id, &beside.costs).await?;
                 }
                 New::Driven(ends) => driven::put(&mut tx, run_id, Driven::Simulated, ends).await?,
             }
@@ -129,9 +134,18 @@ impl Store {
     }
 }
 
+/// What stands beside the optima of a study.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Beside {
+    /// Buses that differ.
+    pub variants: Vec<NewVariant>,
+    /// What designs cost.
+    pub costs: Vec<EconomicInput>,
+}
+
 /// What is written besides averages.
 enum New<'n> {
-    Optima(&'n StoredGrid, &'n Energy),
+    Optima(&'n StoredGrid, &'n Energy, &'n Beside),
     Driven(&'n [DrivenEnds]),
 }
 
@@ -141,7 +155,7 @@ async fn describe(c: &mut SqliteConnection) -> Result<(), StoreError> {
     execute(c, "ANALYZE").await
 }
 
-async fn last_run(c: &mut SqliteConnection) -> Result<i64, StoreError> {
+pub(crate) async fn last_run(c: &mut SqliteConnection) -> Result<i64, StoreError> {
     Ok(sqlx::query("SELECT coalesce(max(run_id), 0) FROM run").fetch_one(c).await?.try_get(0)?)
 }
 

@@ -163,3 +163,47 @@ JOIN hvac_design AS d ON d.name = f.design
 JOIN power_limit AS l USING (design_id)
 JOIN annual_average AS a ON a.design = f.design AND a.pmv_min = f.pmv_min AND a.pmv_max = f.pmv_max
 GROUP BY f.design, f.pmv_min, f.pmv_max";
+
+/// Energy of the year times the user's prices. The reference is the first design that has figures; what is saved costs what
+/// investment and maintenance take more a year, over the life of each. A design that saves nothing has no price of it.
+pub const ECONOMICS: &str = "INSERT INTO economics
+WITH cost AS (
+    SELECT
+        e.design,
+        e.pmv_limit,
+        e.pmv_min,
+        e.pmv_max,
+        i.design_order,
+        i.currency,
+        i.price_per_kwh,
+        i.carbon_kg_per_kwh,
+        e.kwh_per_bus_year AS kwh,
+        i.investment / i.present_value_factor + i.maintenance_per_year AS fixed_per_year,
+        i.investment + i.present_value_factor
+            * (i.maintenance_per_year + e.kwh_per_bus_year * i.price_per_kwh) AS net_present_cost,
+        e.run_id
+    FROM annual_energy AS e
+    JOIN economic_input AS i USING (design)
+)
+SELECT
+    c.design,
+    c.pmv_limit,
+    c.pmv_min,
+    c.pmv_max,
+    c.currency,
+    c.kwh,
+    c.kwh * c.price_per_kwh,
+    c.fixed_per_year + c.kwh * c.price_per_kwh,
+    c.net_present_cost,
+    c.kwh * c.carbon_kg_per_kwh,
+    r.design,
+    r.kwh - c.kwh,
+    (r.kwh - c.kwh) * c.carbon_kg_per_kwh,
+    c.fixed_per_year - r.fixed_per_year,
+    CASE WHEN r.kwh > c.kwh THEN (c.fixed_per_year - r.fixed_per_year) / (r.kwh - c.kwh) END,
+    CASE WHEN r.kwh > c.kwh AND c.fixed_per_year > r.fixed_per_year
+        THEN (c.fixed_per_year - r.fixed_per_year) / (r.kwh - c.kwh) END,
+    c.run_id
+FROM cost AS c
+JOIN cost AS r ON r.pmv_min = c.pmv_min AND r.pmv_max = c.pmv_max
+WHERE r.design_order = (SELECT min(design_order) FROM economic_input)";
