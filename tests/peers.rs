@@ -1,5 +1,7 @@
 //! Other people's programs beside ours. Each test runs a script of `tests/peers/` and is skipped, with a line that says so,
 //! where Python or the packages of `tests/peers/requirements.txt` are absent.
+//!
+//! `BUSCLIMATE_PEER_SAMPLES` says how many samples Ipopt solves, 100 otherwise.
 
 use cabin::{
     ComfortWindow, Disturbances, Optimum, Outcome, PassengerViews, PmvModel, SolarGains, Vehicle, kelvin,
@@ -157,7 +159,9 @@ fn xval_casadi_ipopt_optima() {
     let limits = [0.0, 0.25, 0.5, 1.0, 1.5, 2.0];
     let windows = limits.iter().map(|&l| ComfortWindow::symmetric(l).expect("valid")).collect();
     let grid = Grid::new(paper_designs(), windows).expect("valid");
-    let samples = samples(300);
+    let count =
+        std::env::var("BUSCLIMATE_PEER_SAMPLES").map_or(100, |count| count.parse().expect("a number of samples"));
+    let samples = samples(count);
 
     let mut cases = String::new();
     for d in &samples {

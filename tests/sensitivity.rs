@@ -231,3 +231,71 @@ fn cli_the_same_bus_under_other_weather() {
 fn csv_rows(text: &str) -> Vec<Vec<String>> {
     text.lines().map(|line| line.split(',').map(str::to_owned).collect()).collect()
 }
+
+#[test]
+fn cli_a_limited_unit_comes_near_and_says_how_near() {
+    let scratch = small();
+    scratch.edit("study.toml", "[control]\npmv_limits = [", "[control]\npmv_limits = [] # [");
+    scratch.expect(0, &["run", "--quiet"]);
+    let free = "SELECT design, pmv_limit, hvac_power_w FROM annual_average WHERE design IN ('hp', 'ptc') ORDER BY 1, 2";
+    let before = scratch.query(free);
+    assert_eq!(scratch.query("SELECT count(*) FROM limited_annual"), [["0"]]);
+    let small_pump = "heating = \"hp\"\nlimits_are = \"thermal\"\n\
+        heating_limit_w = [[-20.0, 1500.0], [10.0, 3000.0]]\n";
+    add(
+        &scratch,
+        &format!(
+            "[designs.\"small hp\"]\n{small_pump}[designs.\"small hp+ptc\"]\n{small_pump}backup_heater_w = 30000\n\
+             [designs.\"ample hp\"]\n{}",
+            small_pump.replace("1500.0", "1e6").replace("3000.0", "1e6"),
+        ),
+    );
+    scratch.expect(0, &["run", "--quiet"]);
+    assert_eq!(scratch.query(free), before);
+    let same = "SELECT count(*) FROM annual_average AS a JOIN annual_average AS b USING (pmv_min, pmv_max)
+        WHERE a.design = 'hp' AND b.design = 'ample hp' AND a.hvac_power_w = b.hvac_power_w";
+    assert_eq!(scratch.query(same), [["2"]]);
+
+    let sql = "SELECT pmv_limit, limited_count, limited_weight, mean_unmet_heat_w, largest_unmet_heat_w, mean_pmv_miss,
+        largest_pmv_miss, backup_heater_power_w FROM limited_annual WHERE design = 'small hp' ORDER BY pmv_limit";
+    let rows: Vec<Vec<f64>> = scratch.query(sql).iter().map(|row| row.iter().map(|v| number(v)).collect()).collect();
+    let [narrow, wide] = &rows[..] else { panic!("{rows:?}") };
+    for row in [narrow, wide] {
+        assert!(row[1] > 0.0 && 0.0 < row[2] && row[2] < 1.0, "{row:?}");
+        assert!(0.0 < row[3] && row[3] <= row[4] && 0.0 < row[5] && row[5] <= row[6] && row[7] == 0.0, "{row:?}");
+    }
+    assert!(narrow[1] > wide[1] && narrow[4] > wide[4], "{rows:?}");
+    let points = "SELECT count(*) FILTER (WHERE status = 'limited'), count(*) FILTER (WHERE status = 'limited'
+        AND NOT (unmet_heat_w > 0.0 AND (pmv < pmv_min OR pmv > pmv_max))), count(*) FILTER (WHERE status = 'solved'
+        AND (unmet_heat_w <> 0.0 OR pmv < pmv_min - 1e-6 OR pmv > pmv_max + 1e-6)) FROM optimum WHERE design = 'small hp'";
+    assert_eq!(scratch.query(points), [[(narrow[1] + wide[1]).to_string(), "0".into(), "0".into()]]);
+    // With the back-up heater every window is met, for more power than the small pump takes and less than heaters alone.
+    let helped =
+        "SELECT sum(limited_count), min(backup_heater_power_w) > 0.0 FROM limited_annual WHERE design = 'small hp+ptc'";
+    assert_eq!(scratch.query(helped), [["0", "1"]]);
+    let between = "SELECT count(*) FROM annual_average AS a JOIN annual_average AS b USING (pmv_min, pmv_max)
+        JOIN annual_average AS c USING (pmv_min, pmv_max) WHERE a.design = 'small hp' AND b.design = 'small hp+ptc'
+        AND c.design = 'ptc' AND a.hvac_power_w < b.hvac_power_w AND b.hvac_power_w < c.hvac_power_w";
+    assert_eq!(scratch.query(between), [["2"]]);
+    let report = scratch.read("report/report.md");
+    assert!(report.contains("limited design"), "{report}");
+    let csv = scratch.read("report/limited_annual.csv");
+    assert_eq!(csv.lines().count(), 5, "{csv}");
+    scratch.expect(0, &["verify", "--quiet"]);
+
+    let run = scratch.expect(2, &["solve", "--method", "nlp"]);
+    assert!(run.stderr.contains("which design \"small hp\" has; solve it by --method fast"), "{}", run.stderr);
+    for (from, to, said) in [
+        ("limits_are = \"thermal\"\n", "", "heating_limit_w needs limits_are = \"electric\" or \"thermal\" beside it"),
+        ("[10.0, 3000.0]", "[-30.0, 3000.0]", "heating_limit_w: row 2: -30 °C is not above the row before"),
+        ("1500.0]", "-1.0]", "heating_limit_w: row 1 is [-20, -1]"),
+        ("[[-20.0, 1500.0], [10.0, 3000.0]]", "\"much\"", "expected a number of W, or a table of [ambient temperature"),
+        ("backup_heater_w = 30000", "backup_heater_w = -1", "backup_heater_w = -1 must lie between 0 and 1000000"),
+    ] {
+        let text = scratch.read("study.toml");
+        scratch.edit("study.toml", from, to);
+        let run = scratch.expect(2, &["check"]);
+        assert!(run.stderr.contains(said), "{to}: {}", run.stderr);
+        scratch.write("study.toml", text);
+    }
+}

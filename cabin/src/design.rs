@@ -1,6 +1,6 @@
 //! What HVAC equipment a bus has.
 
-use crate::{Cop, Devices};
+use crate::{Cop, Devices, PowerLimit};
 
 /// How the air is heated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -41,4 +41,18 @@ pub struct Design {
     pub cooling_cop: Cop,
     /// The devices on board.
     pub devices: Devices,
+    /// What the air unit can give in heating; `None` without a limit.
+    pub heating_limit: Option<PowerLimit>,
+    /// What it can take away in cooling.
+    pub cooling_limit: Option<PowerLimit>,
+    /// A resistive heater behind the air unit, which helps where that is not enough, in W; 0 where there is none.
+    pub backup_heater_w: f64,
+}
+
+impl Design {
+    /// Whether anything of it is limited, or helped out by another heater.
+    #[must_use]
+    pub fn is_limited(&self) -> bool {
+        self.heating_limit.is_some() || self.cooling_limit.is_some()
+    }
 }

@@ -17,6 +17,7 @@ mod design;
 mod devices;
 mod disturbances;
 mod flows;
+mod limits;
 mod load;
 mod operation;
 mod passengers;
@@ -38,6 +39,7 @@ pub use design::{Design, Heating};
 pub use devices::Devices;
 pub use disturbances::{Disturbances, DisturbancesError};
 pub use flows::{HeatFlows, Slopes, Temperatures};
+pub use limits::{LimitOf, PowerLimit, PowerLimitError, Supply};
 pub use load::LoadChange;
 pub use operation::{Candidate, Infeasible, OperatingMode, Operation, Optimum, Outcome};
 pub use passengers::{

@@ -38,14 +38,19 @@ pub struct Operation {
     pub mode: OperatingMode,
     /// The devices that run.
     pub devices: Devices,
-    /// Electric power of the air unit in W.
+    /// Electric power of the air unit in W, its back-up heater included.
     pub air_unit_power_w: f64,
     /// Electric power of the radiant heaters in W.
     pub radiant_heater_power_w: f64,
     /// Electric power of the air curtains in W.
     pub air_curtain_power_w: f64,
+    /// Of that, what its back-up heater takes.
+    pub backup_heater_power_w: f64,
     /// Heat that the air unit brings in W, negative when cooling.
     pub air_unit_heat_w: f64,
+    /// Heat in W that is missing at the limit of the window, because nothing on board can bring or take it away: 0 where the
+    /// window is met. The state is the nearest to it.
+    pub unmet_heat_w: f64,
     /// Temperatures of the reservoirs.
     pub temperatures: Temperatures,
     /// Mean radiant temperature of the average passenger in K.
@@ -83,7 +88,8 @@ pub enum Infeasible {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Outcome {
     /// The global optimum, and by how many W the best other choice of heaters and curtain is more expensive
-    /// (`None` where the design has no other feasible choice).
+    /// (`None` where the design has no other feasible choice). Where no choice meets the window within the limits of the
+    /// design, the operation that comes nearest to it.
     Solved(Operation, Option<f64>),
     /// No operation meets the window.
     Infeasible(Infeasible),
@@ -105,6 +111,7 @@ impl Outcome {
     #[must_use]
     pub fn words(&self) -> &'static str {
         match self {
+            Self::Solved(operation, _) if operation.unmet_heat_w > 0.0 => "limited",
             Self::Solved(..) => "solved",
             Self::Infeasible(Infeasible::TooWarm) => "infeasible: too warm",
             Self::Infeasible(Infeasible::TooCold) => "infeasible: too cold",

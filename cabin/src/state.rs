@@ -5,7 +5,7 @@
 //! [`Target`] then says how far along it to go. No clothing iteration and no balance iteration is nested in another.
 
 use crate::comfort::Passenger;
-use crate::{Cabin, Heaters, Slopes, Temperatures};
+use crate::{Cabin, Design, Devices, Heaters, OperatingMode, Slopes, Temperatures};
 
 /// What a steady state has to fulfil besides the surface balances.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,6 +19,17 @@ pub enum Target {
     },
     /// A mean vote of the passengers.
     Vote(f64),
+    /// Heat from the air unit along a line over the cabin temperature.
+    Heat {
+        /// Whether the air curtains run.
+        curtain: bool,
+        /// Heat in W at `at_k`.
+        heat_w: f64,
+        /// How much more for each kelvin of the cabin; less than the heat that a state takes.
+        per_k: f64,
+        /// Cabin temperature in K.
+        at_k: f64,
+    },
 }
 
 /// A steady state, or the guess of one.
@@ -42,6 +53,8 @@ const MOST_STEPS: usize = 60;
 const SETTLED_K: f64 = 1e-5;
 /// Longest step of the cabin temperature in K.
 const LONGEST_STEP_K: f64 = 50.0;
+/// Over which the slope of a capacity is taken, in K.
+const SLOPE_STEP_K: f64 = 1e-3;
 /// Farthest prediction beyond two states, in units of their distance.
 const FARTHEST: f64 = 3.0;
 
@@ -96,6 +109,45 @@ impl Cabin<'_> {
         true
     }
 
+    /// The state in which the air unit gives all that a design has in a mode: there the heat that the cabin takes, which rises
+    /// with its temperature, meets what there is, which does not. Newton's method on both.
+    ///
+    /// `None` where the iteration does not settle, or the mode is passive.
+    #[must_use]
+    pub fn capacity_state(
+        &self,
+        design: &Design,
+        devices: Devices,
+        mode: OperatingMode,
+        guess: &State,
+    ) -> Option<State> {
+        let sign = match mode {
+            OperatingMode::Heating => 1.0,
+            OperatingMode::Cooling => -1.0,
+            OperatingMode::Passive => return None,
+        };
+        let most_w = |cabin_k: f64| {
+            let lift_k = sign * (cabin_k - self.ambient_k);
+            sign * design.capacity_w(mode, self.ambient_k, lift_k)
+        };
+        let heaters = if devices.radiant_heaters { Heaters::On } else { Heaters::Off };
+        let mut state = *guess;
+        for _ in 0..MOST_STEPS {
+            let at_k = state.temperatures.cabin_k;
+            let heat_w = most_w(at_k);
+            // What rises with the temperature here is a rounding error.
+            let per_k = ((most_w(at_k + SLOPE_STEP_K) - heat_w) / SLOPE_STEP_K).min(0.0);
+            let target = Target::Heat { curtain: devices.air_curtain, heat_w, per_k, at_k };
+            if !self.settle_state(target, heaters, &mut state) {
+                return None;
+            }
+            if (state.temperatures.cabin_k - at_k).abs() < SETTLED_K {
+                return Some(state);
+            }
+        }
+        None
+    }
+
     fn settle(&self, state: &mut State, passengers: &mut [Passenger], heaters: Heaters, target: Target) -> bool {
         (0..MOST_STEPS).any(|_| self.step(state, passengers, heaters, target) < SETTLED_K)
     }
@@ -113,6 +165,13 @@ impl Cabin<'_> {
                 let [heater_k, interior_k, inside_k, _] = linear.shift_k;
                 let shift_w = self.g_heater * heater_k + self.g_interior * interior_k + self.g_shell * inside_k;
                 (shift_w - heat_w) / slope_w_k
+            }
+            Target::Heat { curtain, heat_w, per_k, at_k } => {
+                let (taken_w, slope_w_k) = self.air_unit_heat_w(&state.temperatures, &slopes, curtain);
+                let [heater_k, interior_k, inside_k, _] = linear.shift_k;
+                let shift_w = self.g_heater * heater_k + self.g_interior * interior_k + self.g_shell * inside_k;
+                let brought_w = heat_w + per_k * (state.temperatures.cabin_k - at_k);
+                (brought_w + shift_w - taken_w) / (slope_w_k - per_k)
             }
         };
         let cabin_step_k = cabin_step_k.clamp(-LONGEST_STEP_K, LONGEST_STEP_K);

@@ -22,7 +22,7 @@ pub struct ChunkRow {
 }
 
 /// The numbers of an operation, in the order of [`numbers`].
-const NUMBERS: [&str; 12] = [
+const NUMBERS: [&str; 14] = [
     "air_unit_power_w",
     "radiant_heater_power_w",
     "air_curtain_power_w",
@@ -34,6 +34,8 @@ const NUMBERS: [&str; 12] = [
     "radiant_heater_k",
     "mean_radiant_k",
     "pmv",
+    "backup_heater_power_w",
+    "unmet_heat_w",
     "runner_up_excess_w",
 ];
 
@@ -101,6 +103,8 @@ fn numbers(outcome: &Outcome) -> [Option<f64>; NUMBERS.len()] {
         Some(t.radiant_heater_k),
         Some(o.mean_radiant_temperature_k),
         Some(o.pmv),
+        Some(o.backup_heater_power_w),
+        Some(o.unmet_heat_w),
         *excess_w,
     ]
 }
@@ -118,7 +122,7 @@ fn rows(frame: &DataFrame) -> PolarsResult<Result<Vec<ChunkRow>, String>> {
     let row = |i: usize| -> Option<ChunkRow> {
         let value = |n: usize| values[n].get(i);
         let outcome = match statuses.get(i)? {
-            "solved" => Outcome::Solved(
+            "solved" | "limited" => Outcome::Solved(
                 Operation {
                     mode: OperatingMode::from_number(flags[0].get(i)?)?,
                     devices: Devices { air_curtain: flags[1].get(i)? == 1, radiant_heaters: flags[2].get(i)? == 1 },
@@ -136,8 +140,10 @@ fn rows(frame: &DataFrame) -> PolarsResult<Result<Vec<ChunkRow>, String>> {
                     },
                     mean_radiant_temperature_k: value(9)?,
                     pmv: value(10)?,
+                    backup_heater_power_w: value(11)?,
+                    unmet_heat_w: value(12)?,
                 },
-                value(11),
+                value(13),
             ),
             words => [Infeasible::TooWarm, Infeasible::TooCold]
                 .map(Outcome::Infeasible)

@@ -25,6 +25,13 @@ pub(crate) fn solve(
     if store.stage(RecordedStage::Solve)?.is_some_and(|record| record.key == key) {
         return work(0, 0, &points.to_string(), store);
     }
+    let limited = study.grid.designs().iter().find(|d| d.is_limited() || d.backup_heater_w > 0.0);
+    if let Some(design) = limited.filter(|_| study.method != Method::Fast) {
+        return Err(PipelineError::Request(format!(
+            "the nonlinear programs know no limits and no back-up heaters, which design {:?} has; solve it by --method fast",
+            design.name
+        )));
+    }
     store.reopen_stage(RecordedStage::Solve)?;
     let grid = store.put_grid(&study.design_rows, study.grid.windows())?.grid;
     store.put_bus(&grid, &energy::bus(study))?;

@@ -191,6 +191,7 @@ pub(crate) fn content(study: &Study, store: &mut Store) -> Result<StudyReport, P
         control_traces: store.control_traces()?,
         control_trace_points: store.control_trace_points()?,
         control_failures: store.control_failures()?,
+        limited: store.limited()?,
         economics: store.economics()?,
         variants: store.variant_years()?,
         variant_settings: store.variant_settings()?,

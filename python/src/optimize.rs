@@ -31,7 +31,7 @@ struct Samples {
 ///     shadow_fraction (0 sun … 1 shade), passengers, door_open_fraction (0 … 1); sample_id comes along where it is there.
 /// designs : dict of dicts, optional
 ///     The tables `[designs."name"]` of a study file: heating ("ptc" or "hp"), radiant_heaters, air_curtain, heating_cop,
-///     cooling_cop. The five of the paper where nothing is given.
+///     cooling_cop, heating_limit_w, cooling_limit_w, limits_are, backup_heater_w. The five of the paper where nothing is given.
 /// windows : list, optional
 ///     Limits of the predicted mean vote, each L the window -L … L, or pairs of a lower and an upper limit. 0 … 2 in steps of
 ///     0.125 where nothing is given.
@@ -42,7 +42,8 @@ struct Samples {
 /// -------
 /// Table
 ///     A row for each sample, design and window, in this order, with the columns of the view `optimum` (W, °C) and `sample`, the
-///     place of the sample. Where there is no operation, `status` says why and the numbers are null.
+///     place of the sample. Where there is no operation, `status` says why and the numbers are null; `limited` is the nearest one
+///     that the limits of the design allow.
 ///
 /// Raises
 /// ------
@@ -147,6 +148,8 @@ impl Rows {
             ("air_unit_power_w", real(|o| o.air_unit_power_w)),
             ("radiant_heater_power_w", real(|o| o.radiant_heater_power_w)),
             ("air_curtain_power_w", real(|o| o.air_curtain_power_w)),
+            ("backup_heater_power_w", real(|o| o.backup_heater_power_w)),
+            ("unmet_heat_w", real(|o| o.unmet_heat_w)),
             ("operating_mode", Arc::new(operations().map(|o| o.map(|o| o.mode.number())).collect::<Int8Array>())),
             ("air_curtain_on", flag(|o| o.devices.air_curtain)),
             ("radiant_heaters_on", flag(|o| o.devices.radiant_heaters)),

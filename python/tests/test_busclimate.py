@@ -35,7 +35,7 @@ def test_optima_are_those_of_the_program_bit_for_bit(study: bc.Study) -> None:
     pair = stored.join(found, on=keys, suffix="_found")
     assert pair.height == stored.height == found.height > 900
     shared = [name for name in stored.columns if name in found.columns and name not in keys]
-    assert len(shared) == 19
+    assert len(shared) == 21
     for name in shared:
         ours, theirs = pair[f"{name}_found"], pair[name]
         assert ours.cast(theirs.dtype).equals(theirs, null_equal=True), name
@@ -163,6 +163,16 @@ def test_designs_windows_and_constants_are_those_of_a_study_file() -> None:
     assert larger[0]["hvac_power_w"] > rows[1]["hvac_power_w"]
     hot = pa.table(bc.optimize(one(ambient_temperature_c=59.0, passengers=400), own, [0.25])).to_pylist()
     assert all((r["hvac_power_w"] is None) == (r["status"] != "solved") for r in hot)
+
+
+def test_a_limited_design_comes_as_near_as_it_can() -> None:
+    """A limit that binds gives the status `limited`, with the heat that is missing and a vote outside the window."""
+    pump = {"heating": "hp", "limits_are": "thermal", "heating_limit_w": [[-20.0, 2e3], [0.0, 3e3]]}
+    designs = {"limited": pump, "helped": {**pump, "backup_heater_w": 30e3}}
+    rows = pa.table(bc.optimize(one(ambient_temperature_c=-8.0, passengers=5), designs, [1.0])).to_pylist()
+    limited, helped = rows
+    assert limited["status"] == "limited" and limited["unmet_heat_w"] > 0 and limited["pmv"] < -1
+    assert helped["status"] == "solved" and helped["unmet_heat_w"] == 0 and helped["backup_heater_power_w"] > 0
 
 
 def test_a_table_without_rows_has_the_same_columns() -> None:

@@ -118,7 +118,7 @@ def test_samples_and_optima_survive_a_killed_executor(spark: SparkSession, large
     optima = bc.spark.optimize(rows, windows=WINDOWS)
     keys = ["sample_id", "design", "pmv_limit"]
     compared = equal(optima.toArrow(), pa.table(large.table("optimum")), keys)
-    assert compared == 22
+    assert compared == 24
     # By design as Parquet, and back.
     folder = large.database.parent / "optima"
     optima.write.partitionBy("design").parquet(str(folder))

@@ -33,7 +33,7 @@ pub struct ReportFile {
 }
 
 /// The names of all files that a report can have.
-pub const FILES: [&str; 82] = [
+pub const FILES: [&str; 83] = [
     "report.html",
     "report.md",
     "aircurtain_setpoint.svg",
@@ -70,6 +70,7 @@ pub const FILES: [&str; 82] = [
     "limit_share.csv",
     "limit_share.svg",
     "limit_share_values.csv",
+    "limited_annual.csv",
     "mission_cold.svg",
     "mission_cold_values.csv",
     "mission_hot.svg",

@@ -5,9 +5,9 @@ use chrono_tz::Tz;
 use ingest::FileRecord;
 use store::{
     AnnualInterval, AnnualRow, Cloud, ControlClass, ControlPoint, ControlTrace, ControlYear, DesignInterval, DesignRow,
-    DisturbanceBin, DrivenEnds, EconomicRow, Ends, EnergyRow, ExclusionCount, LeftOutRow, LimitShare, MissionTrace,
-    MonthRow, MonthlyRow, Outside, Sensitivities, SetpointRow, SimulatedClass, SimulatedYear, SimulationFailure,
-    SpreadRow, StatusCounts, TraceWindow, VariantSetting, VariantYear, VoteBin,
+    DisturbanceBin, DrivenEnds, EconomicRow, Ends, EnergyRow, ExclusionCount, LeftOutRow, LimitShare, LimitedRow,
+    MissionTrace, MonthRow, MonthlyRow, Outside, Sensitivities, SetpointRow, SimulatedClass, SimulatedYear,
+    SimulationFailure, SpreadRow, StatusCounts, TraceWindow, VariantSetting, VariantYear, VoteBin,
 };
 use study::assumptions::Assumption;
 
@@ -95,6 +95,8 @@ pub struct StudyReport {
     pub control_trace_points: Vec<(ControlPoint, Option<f64>, f64)>,
     /// Missions that controllers cannot drive: mission, design, reason.
     pub control_failures: Vec<[String; 3]>,
+    /// How often limits keep designs from their windows; empty where none does.
+    pub limited: Vec<LimitedRow>,
     /// What comfort costs by the user's figures; empty where the study has none.
     pub economics: Vec<EconomicRow>,
     /// Buses that differ, in all windows; empty where the study has none.
@@ -154,10 +156,15 @@ impl StudyReport {
         self.annual_intervals.iter().find(|r| r.design == design && r.window == window)
     }
 
-    /// The cheapest design in a window, with its power in W.
+    /// The cheapest design of those that meet a window in every hour, with its power in W; of all where none does.
     pub(crate) fn cheapest(&self, window: ComfortWindow) -> Option<(&str, f64)> {
         let of = self.designs.iter().filter_map(|d| Some((d.name.as_str(), self.annual_power_w(&d.name, window)?)));
-        of.min_by(|a, b| a.1.total_cmp(&b.1))
+        of.min_by(|a, b| self.misses(a.0, window).cmp(&self.misses(b.0, window)).then(a.1.total_cmp(&b.1)))
+    }
+
+    /// Whether a design's limits keep it from a window in some hour.
+    pub(crate) fn misses(&self, design: &str, window: ComfortWindow) -> bool {
+        self.limited.iter().any(|r| r.design == design && r.window == window && r.limited > 0)
     }
 
     /// The design that others are compared with: resistive heating and nothing else where the study has it, else the dearest.

@@ -324,6 +324,9 @@ mod tests {
             heating_cop,
             cooling_cop: Cop::Linear { at_zero: 3.0, slope_per_k: 0.09, min: 1.0, max: 4.0 },
             devices: Devices { radiant_heaters: true, air_curtain: true },
+            heating_limit: None,
+            cooling_limit: None,
+            backup_heater_w: 0.0,
         };
         let hyperbola = Cop::Hyperbola { numerator_k: 74.0, offset_k: 17.0, min: 1.0, max: 4.5 };
         let designs = [design(Heating::HeatPump, hyperbola), design(Heating::Ptc, Cop::Constant(1.0))];
@@ -334,7 +337,9 @@ mod tests {
             air_unit_power_w: 3000.0,
             radiant_heater_power_w: 800.0,
             air_curtain_power_w: 100.0,
+            backup_heater_power_w: 0.0,
             air_unit_heat_w: 7500.0,
+            unmet_heat_w: 0.0,
             temperatures,
             mean_radiant_temperature_k: kelvin(16.0),
             pmv: -0.5,

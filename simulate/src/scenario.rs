@@ -1,6 +1,6 @@
 //! Under which conditions a mission is driven: where it starts, and whether power is limited.
 
-use cabin::{Design, Heating};
+use cabin::{Design, Heating, PowerLimit};
 
 use crate::Dynamics;
 
@@ -51,9 +51,18 @@ impl Limits {
             Heating::HeatPump => dynamics.heat_pump_limit_w,
         };
         let (heating_w, cooling_w) = match self {
-            Self::Rated => (rated_w, dynamics.cooling_limit_w),
+            // Of a limit over the ambient temperature the largest: a mission has one.
+            Self::Rated => (
+                rated_w.min(most_electric_w(design.heating_limit.as_ref())),
+                dynamics.cooling_limit_w.min(most_electric_w(design.cooling_limit.as_ref())),
+            ),
             Self::Unlimited => (f64::MAX, f64::MAX),
         };
         PowerLimits { heating_w, cooling_w, radiant_heaters_w: dynamics.heater_limit_w }
     }
+}
+
+/// The electric power in W that a limit lets in at most; one of heat lets in any.
+fn most_electric_w(limit: Option<&PowerLimit>) -> f64 {
+    limit.and_then(PowerLimit::most_electric_w).unwrap_or(f64::MAX)
 }

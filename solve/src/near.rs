@@ -14,7 +14,8 @@ use std::sync::Arc;
 
 use crate::Grid;
 use crate::annual::{AnnualMean, MonthSum, YearSamples, year};
-use crate::choice::{Best, Cheapest, cheapest};
+use crate::choice::{Best, Cheapest, cheapest, nearest};
+use crate::states::START_K;
 
 /// Where the search for the optima of a sample in a window starts, and what the unit does there; with the heaters off and on.
 #[derive(Debug, Clone, Copy)]
@@ -76,7 +77,12 @@ impl<'y> YearStates<'y> {
                     let start = start.or_else(|| Start::cold(&cabin, window));
                     let bests = start.map_or([Some(Best::Lost); 4], |start| start.bests(&cabin, window, wanted));
                     for (design, spec) in bus.designs.iter().enumerate() {
-                        sums[design * windows.len() + place].add(operation(&bests, spec));
+                        let nearest = || {
+                            let guess = start.map(|start| start.states[0])?;
+                            let nearest = nearest(&cabin, spec, &bests, window, &guess)?;
+                            Some((nearest.choice.mode, nearest.powers.total_w))
+                        };
+                        sums[design * windows.len() + place].add(operation(&bests, spec, nearest));
                     }
                 }
             }
@@ -87,13 +93,19 @@ impl<'y> YearStates<'y> {
     }
 }
 
-/// What the unit of a design does in the cheapest choice, and the power in W.
-fn operation(bests: &[Option<Best>; 4], design: &Design) -> Option<(OperatingMode, f64)> {
+/// What the unit of a design does in the cheapest choice, or in the `nearest` one where none meets the window within its limits,
+/// and the power in W.
+fn operation(
+    bests: &[Option<Best>; 4],
+    design: &Design,
+    nearest: impl FnOnce() -> Option<(OperatingMode, f64)>,
+) -> Option<(OperatingMode, f64)> {
     match cheapest(design, bests) {
         Cheapest::Choice { place, powers, .. } => match bests[place] {
             Some(Best::Found(choice)) => Some((choice.mode, powers.total_w)),
             _ => None,
         },
+        Cheapest::Limited => nearest(),
         Cheapest::Infeasible(_) | Cheapest::NotConverged => None,
     }
 }
@@ -211,6 +223,3 @@ impl Search<'_, '_> {
         self.cabin.air_unit_heat_w(&state.temperatures, &state.slopes, curtain).0
     }
 }
-
-/// Where the search for the first state starts, in K.
-const START_K: f64 = 295.0;

@@ -7,8 +7,8 @@ use cabin::{
 
 use crate::Grid;
 use crate::blocks::{Block, in_blocks};
-use crate::choice::{Best, Cheapest, Choice, Powers, cheapest};
-use crate::states::{Seen, States, SteadyState};
+use crate::choice::{Best, Cheapest, Choice, Nearest, Powers, cheapest, nearest};
+use crate::states::{START_K, Seen, States, SteadyState};
 
 /// Solves all points of a sample, with buffers that are kept from sample to sample.
 #[derive(Debug)]
@@ -46,6 +46,7 @@ impl<'a> SampleSolver<'a> {
                         }
                         _ => Outcome::NotConverged,
                     },
+                    Cheapest::Limited => self.limited(&cabin, design, window, &bests),
                     Cheapest::Infeasible(reason) => Outcome::Infeasible(reason),
                     Cheapest::NotConverged => Outcome::NotConverged,
                 };
@@ -64,11 +65,27 @@ impl<'a> SampleSolver<'a> {
         std::array::from_fn(|place| {
             let devices = Devices::CHOICES[place];
             let operation = match (&bests[place], states[place]) {
-                (Some(Best::Found(choice)), Some(state)) => Some(operation(choice, &choice.powers(design), state)),
+                (Some(Best::Found(choice)), Some(state)) => {
+                    let powers = choice.powers(design);
+                    (powers.unmet_heat_w == 0.0).then(|| operation(choice, &powers, state))
+                }
                 _ => None,
             };
             Candidate { devices, available: design.devices.include(devices), operation }
         })
+    }
+
+    /// The operation that comes nearest to a window that no choice of a design meets within its limits.
+    fn limited(&self, cabin: &Cabin<'_>, design: usize, window: usize, bests: &[Option<Best>; 4]) -> Outcome {
+        let (design, window) = (&self.grid.designs()[design], &self.grid.windows()[window]);
+        match nearest(cabin, design, bests, window, &cabin.rough_state(START_K)) {
+            Some(Nearest { choice, state, powers, .. }) => {
+                let heaters = if choice.devices.radiant_heaters { Heaters::On } else { Heaters::Off };
+                let state = SteadyState::new(cabin, heaters, &state);
+                Outcome::Solved(operation(&choice, &powers, &state), None)
+            }
+            None => Outcome::NotConverged,
+        }
     }
 
     fn find_states(&mut self, cabin: &Cabin<'_>) {
@@ -117,7 +134,9 @@ fn operation(choice: &Choice, powers: &Powers, state: &SteadyState) -> Operation
         air_unit_power_w: powers.air_unit_w,
         radiant_heater_power_w: powers.radiant_heater_w,
         air_curtain_power_w: powers.air_curtain_w,
+        backup_heater_power_w: powers.backup_w,
         air_unit_heat_w: choice.air_unit_heat_w,
+        unmet_heat_w: powers.unmet_heat_w,
         temperatures: state.temperatures,
         mean_radiant_temperature_k: state.mean_radiant_k,
         pmv: state.pmv,

@@ -204,4 +204,4 @@ impl Way {
 const FIXED_STEP: f64 = 0.5;
 
 /// Where the search for the first state starts, in K.
-const START_K: f64 = 295.0;
+pub(crate) const START_K: f64 = 295.0;

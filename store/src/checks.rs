@@ -40,7 +40,7 @@ const SIMULATED: Table = ("simulated_mission", &["source_file_id", "design_id", 
 const CONTROLLED: Table = ("controlled_mission", &["source_file_id", "design_id", "window_id", "controller"]);
 const OPTIMA: Table = ("optimum_point", &["sample_id", "design_id", "window_id"]);
 /// Tables of averages, with their keys.
-const AVERAGES: [(&str, &str); 38] = [
+const AVERAGES: [(&str, &str); 39] = [
     ("simulation_month", "design_id, window_id, controller, month"),
     ("simulation_class_month", "design_id, window_id, class_order, month"),
     ("monthly_average", "design, pmv_min, pmv_max, month"),
@@ -77,6 +77,7 @@ const AVERAGES: [(&str, &str); 38] = [
     ("sensitivity_result", "design, pmv_min, pmv_max, quantity"),
     ("sensitivity_swing", "design, pmv_min, pmv_max, quantity, input"),
     ("sensitivity_index", "design, pmv_min, pmv_max, quantity, input"),
+    ("limited_annual", "design, pmv_min, pmv_max"),
     ("economic_input", "design"),
     ("economics", "design, pmv_min, pmv_max"),
 ];

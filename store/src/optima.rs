@@ -12,7 +12,7 @@ use crate::row::{begin, count, insert_sql};
 use crate::{Store, StoreError, StoredGrid};
 
 /// The columns, in the order in which [`add_row`] gives their values.
-const COLUMNS: [&str; 23] = [
+const COLUMNS: [&str; 25] = [
     "sample_id",
     "design_id",
     "window_id",
@@ -35,8 +35,12 @@ const COLUMNS: [&str; 23] = [
     "runner_up_excess_w",
     "kkt_residual",
     "subproblem_count",
+    "backup_heater_power_w",
+    "unmet_heat_w",
     "row_check",
 ];
+/// Values of an operation: columns but for keys and status before it and six after it.
+const OPERATION_VALUES: usize = COLUMNS.len() - 10;
 /// Rows of one INSERT: from here on a statement does not get cheaper by the row.
 const ROWS: usize = 400;
 
@@ -294,19 +298,23 @@ fn add_row(
     for key in keys.into_iter().chain([status]) {
         values.integer(Some(key))?;
     }
-    match outcome {
-        Outcome::Solved(operation, runner_up_excess_w) => {
-            add_operation(&mut values, operation)?;
-            values.real(*runner_up_excess_w)?;
-        }
-        _ => {
-            for _ in 4..COLUMNS.len() - 3 {
+    let solved = match outcome {
+        Outcome::Solved(operation, runner_up_excess_w) => Some((operation, *runner_up_excess_w)),
+        _ => None,
+    };
+    match solved {
+        Some((operation, _)) => add_operation(&mut values, operation)?,
+        None => {
+            for _ in 0..OPERATION_VALUES {
                 values.real(None)?;
             }
         }
     }
+    values.real(solved.and_then(|(_, runner_up_excess_w)| runner_up_excess_w))?;
     values.real(effort.map(|e| e.kkt_residual))?;
     values.integer(effort.map(|e| i64::from(e.subproblems)))?;
+    values.real(solved.map(|(operation, _)| operation.backup_heater_power_w))?;
+    values.real(solved.map(|(operation, _)| operation.unmet_heat_w))?;
     let check = hash.finish();
     arguments.add(check)
 }
@@ -365,7 +373,9 @@ fn solved(r: &SqliteRow) -> Result<Option<Outcome>, sqlx::Error> {
         air_unit_power_w: value("air_unit_power_w")?,
         radiant_heater_power_w: value("radiant_heater_power_w")?,
         air_curtain_power_w: value("air_curtain_power_w")?,
+        backup_heater_power_w: value("backup_heater_power_w")?,
         air_unit_heat_w: value("air_unit_heat_w")?,
+        unmet_heat_w: value("unmet_heat_w")?,
         temperatures: Temperatures {
             cabin_k: value("cabin_k")?,
             interior_k: value("interior_k")?,

@@ -134,7 +134,9 @@ fn solved(design: usize, mode: OperatingMode, power_w: f64) -> Optimum {
         air_unit_power_w: power_w - 100.0,
         radiant_heater_power_w: 60.0,
         air_curtain_power_w: 40.0,
+        backup_heater_power_w: 0.0,
         air_unit_heat_w: power_w - 100.0,
+        unmet_heat_w: 0.0,
         temperatures: Temperatures {
             radiant_heater_k: k,
             interior_k: k,

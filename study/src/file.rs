@@ -278,6 +278,30 @@ pub struct Design {
     pub air_curtain: bool,
     pub heating_cop: Option<Cop>,
     pub cooling_cop: Option<Cop>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub heating_limit_w: Option<Limit>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cooling_limit_w: Option<Limit>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub limits_are: Option<LimitOf>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub backup_heater_w: Option<f64>,
+}
+
+/// What the limits of a design are limits of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum LimitOf {
+    Electric,
+    Thermal,
+}
+
+/// A number in W, or a table of `[ambient temperature in °C, W]`.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Limit {
+    Constant(f64),
+    Table(Vec<[f64; 2]>),
 }
 
 /// What a variant says: the value of an input, or under `designs` the names of those that it is for.
@@ -399,6 +423,10 @@ fn default_designs() -> Vec<(String, Design)> {
         air_curtain,
         heating_cop: None,
         cooling_cop: None,
+        heating_limit_w: None,
+        cooling_limit_w: None,
+        limits_are: None,
+        backup_heater_w: None,
     };
     [
         ("ptc", design(Heating::Ptc, false, false)),
@@ -482,6 +510,34 @@ impl<'de> Deserialize<'de> for Cop {
                 Vec::deserialize(SeqAccessDeserializer::new(list))
                     .map(Cop::Table)
                     .map_err(|e| A::Error::custom(format!("{e}; a COP table is a list of pairs [lift in K, COP]")))
+            }
+        }
+        source.deserialize_any(Either)
+    }
+}
+
+impl<'de> Deserialize<'de> for Limit {
+    fn deserialize<D: Deserializer<'de>>(source: D) -> Result<Self, D::Error> {
+        struct Either;
+        impl<'de> Visitor<'de> for Either {
+            type Value = Limit;
+
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str(
+                    "a number of W, or a table of [ambient temperature in °C, W] such as [[-20.0, 6e3], [10.0, 12e3]]",
+                )
+            }
+
+            fn visit_f64<E: serde::de::Error>(self, value: f64) -> Result<Limit, E> {
+                Ok(Limit::Constant(value))
+            }
+
+            fn visit_i64<E: serde::de::Error>(self, value: i64) -> Result<Limit, E> {
+                Ok(Limit::Constant(value as f64))
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<Limit, A::Error> {
+                Vec::deserialize(SeqAccessDeserializer::new(list)).map(Limit::Table)
             }
         }
         source.deserialize_any(Either)

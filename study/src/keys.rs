@@ -1,6 +1,6 @@
 //! Keys: what a stored thing was made from, as BLAKE3 hashes that do not depend on place, time or layout of a file.
 
-use cabin::{ComfortWindow, Vehicle};
+use cabin::{ComfortWindow, Design, Vehicle};
 use ingest::mission::RouteChoice;
 use simulate::SIMULATION_VERSION;
 use solve::Method;
@@ -36,11 +36,22 @@ pub(crate) fn study_hash(file: &StudyFile) -> String {
 
 /// Key of the optima of a design, besides sample and window: equipment, constants of the bus, method. A window of the
 /// nonlinear programs starts from the one before it, so that all of them belong to the key there.
-pub(crate) fn design_key(row: &DesignRow, vehicle: &Vehicle, method: Method, windows: &[ComfortWindow]) -> String {
+pub(crate) fn design_key(
+    row: &DesignRow,
+    design: &Design,
+    vehicle: &Vehicle,
+    method: Method,
+    windows: &[ComfortWindow],
+) -> String {
     let devices = row.devices;
     let rest = format!("{} {} {} {}", devices.radiant_heaters, devices.air_curtain, method.name(), method.version());
     let vehicle = canonical(vehicle);
     let mut parts = vec![row.heating.name(), &row.heating_cop, &row.cooling_cop, &rest, &vehicle];
+    // One without limits is what it was before there were any.
+    let limits = format!("{:?} {:?} {}", design.heating_limit, design.cooling_limit, design.backup_heater_w);
+    if design.is_limited() || design.backup_heater_w > 0.0 {
+        parts.push(&limits);
+    }
     let neighbours: Vec<String> = windows.iter().map(|w| format!("{} {}", w.pmv_min(), w.pmv_max())).collect();
     if method != Method::Fast {
         parts.extend(neighbours.iter().map(String::as_str));
@@ -109,9 +120,13 @@ pub fn settings(study: &Study, stage: &str) -> BTreeMap<String, String> {
         "shade" => named(&surroundings_settings(study)),
         "solve" => {
             let mut settings = flattened("vehicle", &study.vehicle);
-            for row in &study.design_rows {
+            for (row, design) in study.design_rows.iter().zip(study.grid.designs()) {
                 let mut of_design =
                     |key: &str, value: String| settings.insert(format!("designs.{:?}.{key}", row.name), value);
+                if design.is_limited() || design.backup_heater_w > 0.0 {
+                    let limits = [&design.heating_limit, &design.cooling_limit].map(|limit| format!("{limit:?}"));
+                    of_design("limits", format!("{}, back-up heater {} W", limits.join(", "), design.backup_heater_w));
+                }
                 of_design("heating", row.heating.name().to_owned());
                 of_design("heating_cop", row.heating_cop.clone());
                 of_design("cooling_cop", row.cooling_cop.clone());

@@ -213,8 +213,8 @@ impl Study {
     /// The same study, its optima found by a given method: the keys of the designs tell the methods apart.
     #[must_use]
     pub fn solved_by(mut self, method: Method) -> Self {
-        for row in &mut self.design_rows {
-            row.design_key = keys::design_key(row, &self.vehicle, method, self.grid.windows());
+        for (row, design) in self.design_rows.iter_mut().zip(self.grid.designs()) {
+            row.design_key = keys::design_key(row, design, &self.vehicle, method, self.grid.windows());
             row.method = method;
         }
         self.method = method;

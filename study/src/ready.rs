@@ -1,6 +1,8 @@
 //! From what was typed to what is meant: names looked up, ranges checked, lists expanded.
 
-use cabin::{ComfortWindow, Cop, Design, Devices, Heating, named_cooling_cops, named_heating_cops};
+use cabin::{
+    ComfortWindow, Cop, Design, Devices, Heating, LimitOf, PowerLimit, named_cooling_cops, named_heating_cops,
+};
 use ingest::mission::{Door, MissionFormat, MissionOptions, RouteChoice, TelemetryMap, Vehicle};
 use ingest::weather::{Clock, ColumnMap, IrradianceUnit, TemperatureUnit, TimeLabel, WeatherFormat};
 use setpoints::published;
@@ -223,7 +225,33 @@ pub(crate) fn design((name, typed): &(String, file::Design)) -> Result<(Design, 
         method: Method::Fast,
         design_key: String::new(),
     };
-    let design = Design { name: name.clone(), heating, heating_cop, cooling_cop, devices };
+    let limit = |key: &str, given: &Option<file::Limit>| {
+        let Some(given) = given else { return Ok(None) };
+        let of = match typed.limits_are {
+            Some(file::LimitOf::Electric) => LimitOf::Electric,
+            Some(file::LimitOf::Thermal) => LimitOf::Thermal,
+            None => return Err(format!("{key} needs limits_are = \"electric\" or \"thermal\" beside it")),
+        };
+        let limit = match given {
+            file::Limit::Constant(limit_w) => PowerLimit::constant(of, *limit_w),
+            file::Limit::Table(rows) => {
+                PowerLimit::table(of, &rows.iter().map(|[ambient_c, w]| (*ambient_c, *w)).collect::<Vec<_>>())
+            }
+        };
+        limit.map(Some).map_err(|e| format!("{key}: {e}"))
+    };
+    let heating_limit = limit("heating_limit_w", &typed.heating_limit_w).map_err(error)?;
+    let cooling_limit = limit("cooling_limit_w", &typed.cooling_limit_w).map_err(error)?;
+    if typed.limits_are.is_some() && heating_limit.is_none() && cooling_limit.is_none() {
+        return Err(error("limits_are says what no limit is; give heating_limit_w or cooling_limit_w".to_owned()));
+    }
+    let backup_heater_w = typed.backup_heater_w.unwrap_or(0.0);
+    if !(0.0..=1e6).contains(&backup_heater_w) {
+        return Err(error(format!("backup_heater_w = {backup_heater_w} must lie between 0 and 1000000")));
+    }
+    let name = name.clone();
+    let design =
+        Design { name, heating, heating_cop, cooling_cop, devices, heating_limit, cooling_limit, backup_heater_w };
     Ok((design, row))
 }
 

@@ -144,6 +144,15 @@ fn values(study: &Study) -> Vec<(String, String)> {
                     of("cooling_cop", row.cooling_cop.clone());
                     of("radiant_heaters", row.devices.radiant_heaters.to_string());
                     of("air_curtain", row.devices.air_curtain.to_string());
+                    let pairs = value.as_array().into_iter().flatten();
+                    let typed = pairs.filter(|pair| pair[0] == row.name.as_str()).map(|pair| &pair[1]).next();
+                    for key in ["heating_limit_w", "cooling_limit_w", "limits_are", "backup_heater_w"] {
+                        match typed.map_or(&Value::Null, |typed| &typed[key]) {
+                            Value::Null => {}
+                            Value::String(text) => of(key, text.clone()),
+                            other => of(key, other.to_string()),
+                        }
+                    }
                 }
             }
             _ => flatten(section.clone(), value, &mut values),

@@ -12,7 +12,16 @@ pub fn design(name: &str, heating: Heating, radiant_heaters: bool, air_curtain: 
     };
     let cooling_cop = named_cooling_cops().swap_remove(0).1;
     let devices = Devices { radiant_heaters, air_curtain };
-    Design { name: name.to_owned(), heating, heating_cop, cooling_cop, devices }
+    Design {
+        name: name.to_owned(),
+        heating,
+        heating_cop,
+        cooling_cop,
+        devices,
+        heating_limit: None,
+        cooling_limit: None,
+        backup_heater_w: 0.0,
+    }
 }
 
 /// The five designs of the paper.

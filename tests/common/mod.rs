@@ -15,7 +15,7 @@ use store::Store;
 use tempfile::TempDir;
 
 /// All that a database says of a study, but for when and by which run.
-pub const CONTENT: [&str; 45] = [
+pub const CONTENT: [&str; 46] = [
     "SELECT * FROM sample",
     "SELECT * FROM optimum",
     "SELECT design, pmv_min, pmv_max, month, hvac_power_w, heating_power_w, cooling_power_w, sample_count, unsolved_count,
@@ -84,6 +84,8 @@ pub const CONTENT: [&str; 45] = [
         low_value, high_value FROM sensitivity_swing",
     "SELECT design, pmv_min, pmv_max, quantity, input, input_order, first_order, first_order_low, first_order_high,
         total_order, total_order_low, total_order_high FROM sensitivity_index",
+    "SELECT design, pmv_min, pmv_max, limited_count, limited_weight, mean_unmet_heat_w, largest_unmet_heat_w, mean_pmv_miss,
+        largest_pmv_miss, backup_heater_power_w FROM limited_annual",
     "SELECT design, design_order, currency, price_per_kwh, carbon_kg_per_kwh, interest, investment, maintenance_per_year,
         life_years, present_value_factor FROM economic_input",
     "SELECT design, pmv_min, pmv_max, currency, kwh_per_bus_year, energy_cost_per_year, annual_cost, net_present_cost,

@@ -26,6 +26,7 @@ pub(super) fn section(study: &StudyReport) -> Section {
         .with(Block::Table(Table::new("annual_average.csv", &["PMV"], &designs, rows)))
         .with(study.has_intervals().then(interval_note))
         .with(weights_note(study))
+        .with(limited_note(study))
         .with(meaning(study))
         .with(Block::limits(
             "These are optima of single hours: no control reaches all of them, and what a cabin takes to warm up is not in them. Sections\n\
@@ -58,6 +59,20 @@ fn meaning(study: &StudyReport) -> Option<Block> {
     let words = " The farther the vote may be from neutral, the less power any design needs: what is lower on the same place of the\n\
                  figure is cheaper for the same comfort.";
     Some(Block::Means(vec![Span::Value(text), Span::Text(words)]))
+}
+
+/// Which designs do not give the comfort that their row says.
+fn limited_note(study: &StudyReport) -> Option<Block> {
+    let misses = |name: &&str| study.windows().into_iter().any(|w| study.misses(name, w));
+    let names: Vec<&str> = study.design_names().into_iter().filter(misses).collect();
+    let text = vec![
+        Span::Text("Not in every hour within the window, because power is limited: "),
+        Span::Value(names.join(", ")),
+        Span::Text(
+            ". What comes nearest counts; the section on limits says how near. No such design is called the cheapest.",
+        ),
+    ];
+    (!names.is_empty()).then_some(Block::Note(text))
 }
 
 /// What stands in brackets.

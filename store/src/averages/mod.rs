@@ -40,6 +40,8 @@ impl Store {
             optima::LIMIT_SHARE,
             "DELETE FROM annual_energy",
             optima::ANNUAL_ENERGY,
+            "DELETE FROM limited_annual",
+            optima::LIMITED,
             "DELETE FROM economics",
             optima::ECONOMICS,
             "DELETE FROM unmet_demand",

@@ -207,3 +207,41 @@ SELECT
 FROM cost AS c
 JOIN cost AS r ON r.pmv_min = c.pmv_min AND r.pmv_max = c.pmv_max
 WHERE r.design_order = (SELECT min(design_order) FROM economic_input)";
+
+/// Points that lack heat, or whose back-up heater works: counts, shares of the year, and means over the limited ones. Windows of
+/// designs without either have no row.
+pub const LIMITED: &str = "INSERT INTO limited_annual
+WITH limited AS (
+    SELECT
+        p.design_id,
+        p.window_id,
+        p.sample_id,
+        p.unmet_heat_w,
+        p.backup_heater_power_w,
+        max(w.pmv_min - p.pmv, p.pmv - w.pmv_max) AS pmv_miss,
+        n.sample_weight
+    FROM optimum_point AS p
+    JOIN hourly_sample AS s USING (sample_id)
+    JOIN month_weight AS n ON n.month = s.month
+    JOIN comfort_window AS w USING (window_id)
+    WHERE p.status = 0 AND (p.unmet_heat_w > 0.0 OR p.backup_heater_power_w > 0.0)
+)
+SELECT
+    d.name,
+    w.pmv_limit,
+    w.pmv_min,
+    w.pmv_max,
+    count(*) FILTER (WHERE l.unmet_heat_w > 0.0),
+    coalesce(sum(l.sample_weight ORDER BY l.sample_id) FILTER (WHERE l.unmet_heat_w > 0.0), 0.0),
+    coalesce(sum(l.unmet_heat_w * l.sample_weight ORDER BY l.sample_id) FILTER (WHERE l.unmet_heat_w > 0.0)
+        / sum(l.sample_weight ORDER BY l.sample_id) FILTER (WHERE l.unmet_heat_w > 0.0), 0.0),
+    max(l.unmet_heat_w),
+    coalesce(sum(l.pmv_miss * l.sample_weight ORDER BY l.sample_id) FILTER (WHERE l.unmet_heat_w > 0.0)
+        / sum(l.sample_weight ORDER BY l.sample_id) FILTER (WHERE l.unmet_heat_w > 0.0), 0.0),
+    coalesce(max(l.pmv_miss) FILTER (WHERE l.unmet_heat_w > 0.0), 0.0),
+    sum(l.backup_heater_power_w * l.sample_weight ORDER BY l.sample_id),
+    (SELECT coalesce(max(run_id), 0) FROM run)
+FROM limited AS l
+JOIN hvac_design AS d USING (design_id)
+JOIN comfort_window AS w USING (window_id)
+GROUP BY l.design_id, l.window_id";
