@@ -279,6 +279,10 @@ fn cli_a_limited_unit_comes_near_and_says_how_near() {
     assert_eq!(scratch.query(between), [["2"]]);
     let report = scratch.read("report/report.md");
     assert!(report.contains("limited design"), "{report}");
+    let answer = report.lines().find(|line| line.contains("the least electricity.")).unwrap();
+    assert!(!answer.contains("small"), "{answer}");
+    assert!(report.contains("“small hp”), too weak in some hours | "), "{report}");
+    assert!(!report.contains("“small hp+ptc”), too weak"), "{report}");
     let csv = scratch.read("report/limited_annual.csv");
     assert_eq!(csv.lines().count(), 5, "{csv}");
     scratch.expect(0, &["verify", "--quiet"]);

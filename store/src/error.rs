@@ -74,6 +74,14 @@ pub enum StoreError {
     /// A sample refers to a mission file that is not stored.
     #[error("the sample of mission {0:?} refers to a file that the database does not hold")]
     UnknownFile(String),
+    /// An optimum refers to what is not stored.
+    #[error("an optimum refers to row {id} of {table}, which the database does not hold")]
+    UnknownPoint {
+        /// The table.
+        table: &'static str,
+        /// The row's id.
+        id: i64,
+    },
     /// The thread that drives the database could not start.
     #[error("cannot start the database runtime: {0}")]
     Runtime(std::io::Error),

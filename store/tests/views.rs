@@ -192,6 +192,22 @@ fn filled(store: &mut Store) {
 }
 
 #[test]
+fn prop_an_optimum_of_nothing_is_refused_and_keys_hold_after_it() {
+    let (_folder, mut store) = scratch();
+    filled(&mut store);
+    let stored = |store: &mut Store| store.query_text("SELECT count(*) FROM optimum_point").unwrap();
+    let before = stored(&mut store);
+    let grid = store.put_grid(&[design("ptc", "x"), design("hp", "y")], &[window(1.0)]).unwrap().grid;
+    let optimum = solved(0, OperatingMode::Heating, 1.0);
+    let error = store.put_optima(&grid, [NewOptimum::of(77, &optimum)].into_iter()).unwrap_err();
+    assert!(matches!(error, store::StoreError::UnknownPoint { table: "hourly_sample", id: 77 }), "{error}");
+    assert_eq!(stored(&mut store), before);
+    // Samples that go take their optima along, as before.
+    store.put_samples(&[], &[], &[]).unwrap();
+    assert_eq!(stored(&mut store), [["0"]]);
+}
+
+#[test]
 fn prop_annual_averages_weigh_months_by_their_days_and_leave_unsolved_points_out() {
     let (_folder, mut store) = scratch();
     filled(&mut store);

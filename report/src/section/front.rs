@@ -21,7 +21,7 @@ pub(super) fn section(study: &StudyReport) -> Section {
         .with(study.note.clone().map(|note| Block::Quote(vec![Span::Value(note)])));
     let Some((shown, cheapest)) = study.shown_window().and_then(|w| Some((w, study.cheapest(w)?))) else {
         let none = "There is no answer yet: not one hour of this study has an operation that keeps its passengers comfortable.";
-        return section.with(Block::words(none)).with(Block::List(assumed(study)));
+        return section.with(Block::words(none)).with(Block::List(assumed(study, None)));
     };
     let section = section
         .with(Block::Paragraph(answer(study, shown, cheapest)))
@@ -41,7 +41,7 @@ pub(super) fn section(study: &StudyReport) -> Section {
         }))
         .with(compared(study, shown));
     let assumed_title = Block::Paragraph(vec![Span::Strong("What this rests on:".to_owned())]);
-    section.with(assumed_title).with(Block::List(assumed(study)))
+    section.with(assumed_title).with(Block::List(assumed(study, Some(shown))))
 }
 
 /// A number and its unit, with its interval in words: kWh for an hour is the mean power in kW.
@@ -60,6 +60,7 @@ fn answer(study: &StudyReport, shown: ComfortWindow, (cheapest, power_w): (&str,
     let alike: Vec<&str> = study
         .design_names()
         .into_iter()
+        .filter(|d| study.misses(d, shown) == study.misses(cheapest, shown))
         .filter(|d| study.annual_power_w(d, shown).is_some_and(|w| w <= power_w * (1.0 + ALIKE)))
         .collect();
     let words: Vec<String> = alike.iter().map(|d| equipment(&study.designs, d)).collect();
@@ -147,6 +148,9 @@ fn comfort_costs(study: &StudyReport, shown: ComfortWindow, cheapest: &str) -> O
     Some(Block::Paragraph(vec![Span::Strong("Comfort costs electricity.".to_owned()), Span::Value(text)]))
 }
 
+/// What stands beside equipment whose limits keep it from the comfort that is asked for.
+const TOO_WEAK: &str = ", too weak in some hours";
+
 /// All equipment in words.
 fn compared(study: &StudyReport, shown: ComfortWindow) -> Option<Block> {
     let reference = study.reference(shown)?.0;
@@ -158,8 +162,9 @@ fn compared(study: &StudyReport, shown: ComfortWindow) -> Option<Block> {
         let saved = saved.map(|(s, ends)| sure(100.0 * s, ends.map(|ends| ends.map(|end| 100.0 * end)), 1));
         let less = saved.as_ref().map_or_else(|| "–".to_owned(), |s| s.value.clone());
         let value = energy.value.clone();
+        let too_weak = if study.misses(&d.name, shown) { TOO_WEAK } else { "" };
         Some(vec![
-            capital(&equipment(&study.designs, &d.name)),
+            capital(&equipment(&study.designs, &d.name)) + too_weak,
             value,
             to(energy),
             less,
@@ -173,7 +178,7 @@ fn compared(study: &StudyReport, shown: ComfortWindow) -> Option<Block> {
 }
 
 /// What the numbers stand for, and what they leave out.
-fn assumed(study: &StudyReport) -> Vec<Prose> {
+fn assumed(study: &StudyReport, shown: Option<ComfortWindow>) -> Vec<Prose> {
     let mut list = Vec::new();
     let samples: u64 = study.months.iter().map(|m| m.sample_count).sum();
     list.push(vec![
@@ -186,6 +191,11 @@ fn assumed(study: &StudyReport) -> Vec<Prose> {
         "In every hour the equipment works as cheaply as it possibly can, as if the hour were known beforehand: what is best, not what a\n\
          control on board does.",
     )]);
+    if shown.is_some_and(|shown| study.designs.iter().any(|d| study.misses(&d.name, shown))) {
+        list.push(vec![Span::Text(
+            "Equipment that is too weak in some hours leaves its passengers less comfortable in them than all others: it counts with what it\n             comes to, and is not called the cheapest. The section on limits of comfort says how many hours, and how far.",
+        )]);
+    }
     list.extend(controlled(study));
     list.extend(other_years(study));
     let missing = missing_names(study);
