@@ -50,9 +50,9 @@ pub struct Design {
 }
 
 impl Design {
-    /// Whether anything of it is limited, or helped out by another heater.
+    /// Whether its air unit has a limit, or a back-up heater for where it has.
     #[must_use]
     pub fn is_limited(&self) -> bool {
-        self.heating_limit.is_some() || self.cooling_limit.is_some()
+        self.heating_limit.is_some() || self.cooling_limit.is_some() || self.backup_heater_w > 0.0
     }
 }

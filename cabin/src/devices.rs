@@ -1,5 +1,7 @@
 //! Radiant heaters and air curtains: which of them a design has on board, and which of them run.
 
+use crate::Heaters;
+
 /// A set of devices besides the air unit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Devices {
@@ -20,6 +22,12 @@ impl Devices {
         Self { radiant_heaters: true, air_curtain: false },
         Self { radiant_heaters: true, air_curtain: true },
     ];
+
+    /// The state of the radiant heaters where these run.
+    #[must_use]
+    pub fn heaters(self) -> Heaters {
+        if self.radiant_heaters { Heaters::On } else { Heaters::Off }
+    }
 
     /// Whether every device of `choice` is one of these.
     #[must_use]

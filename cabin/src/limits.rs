@@ -74,12 +74,6 @@ impl PowerLimit {
         Ok(Self { of, rows: rows.iter().map(|(ambient_c, limit_w)| (crate::kelvin(*ambient_c), *limit_w)).collect() })
     }
 
-    /// What it is a limit of.
-    #[must_use]
-    pub fn of(&self) -> LimitOf {
-        self.of
-    }
-
     /// The largest electric power in W that it lets in at any temperature; `None` of a limit of heat.
     #[must_use]
     pub fn most_electric_w(&self) -> Option<f64> {
@@ -97,6 +91,14 @@ impl PowerLimit {
             (None, _) => self.rows[0].1,
         }
     }
+
+    /// The heat in W that it allows at an ambient temperature in K and a COP.
+    fn heat_w(&self, ambient_k: f64, cop: f64) -> f64 {
+        match self.of {
+            LimitOf::Thermal => self.at_w(ambient_k),
+            LimitOf::Electric => self.at_w(ambient_k) * cop,
+        }
+    }
 }
 
 /// What brings the heat that is asked for, the cheaper source first, and what is left.
@@ -111,48 +113,42 @@ pub struct Supply {
 }
 
 impl Design {
-    /// What the unit itself can give at most, in W of heat, at an ambient temperature in K and a lift in K; infinite without a
-    /// limit. The heat of cooling is what it takes away.
-    #[must_use]
+    /// The COP of the unit in a mode, and what limits it; `None` where it is off.
     #[inline]
-    pub fn most_heat_w(&self, mode: OperatingMode, ambient_k: f64, lift_k: f64) -> f64 {
-        let (limit, cop) = match mode {
-            OperatingMode::Heating => (&self.heating_limit, &self.heating_cop),
-            OperatingMode::Cooling => (&self.cooling_limit, &self.cooling_cop),
-            OperatingMode::Passive => return f64::INFINITY,
-        };
-        match limit {
-            None => f64::INFINITY,
-            Some(limit) => match limit.of {
-                LimitOf::Thermal => limit.at_w(ambient_k),
-                LimitOf::Electric => limit.at_w(ambient_k) * cop.at(lift_k),
-            },
+    fn unit(&self, mode: OperatingMode, lift_k: f64) -> Option<(f64, Option<&PowerLimit>)> {
+        match mode {
+            OperatingMode::Heating => Some((self.heating_cop.at(lift_k), self.heating_limit.as_ref())),
+            OperatingMode::Cooling => Some((self.cooling_cop.at(lift_k), self.cooling_limit.as_ref())),
+            OperatingMode::Passive => None,
         }
     }
 
-    /// All that unit and back-up heater can give at most, in W of heat.
-    #[must_use]
-    #[inline]
-    pub fn capacity_w(&self, mode: OperatingMode, ambient_k: f64, lift_k: f64) -> f64 {
-        let backup_w = if mode == OperatingMode::Heating { self.backup_heater_w } else { 0.0 };
-        self.most_heat_w(mode, ambient_k, lift_k) + backup_w
+    /// Heat in W that the back-up heater can bring.
+    fn most_backup_w(&self, mode: OperatingMode) -> f64 {
+        if mode == OperatingMode::Heating { self.backup_heater_w } else { 0.0 }
     }
 
-    /// What brings `heat_w` (its absolute value in cooling): the unit at its COP and the back-up heater at 1, the cheaper one
-    /// first.
+    /// All that unit and back-up heater can give at most, in W of heat, at an ambient temperature in K and the mode's lift in K; infinite
+    /// without a limit. The heat of cooling is what is taken away.
+    #[must_use]
+    pub fn capacity_w(&self, mode: OperatingMode, ambient_k: f64, lift_k: f64) -> f64 {
+        let Some((cop, Some(limit))) = self.unit(mode, lift_k) else { return f64::INFINITY };
+        limit.heat_w(ambient_k, cop) + self.most_backup_w(mode)
+    }
+
+    /// What brings `heat_w` (its absolute value in cooling) at an ambient temperature in K and the mode's lift in K: the
+    /// unit at its COP and the back-up heater at 1, the cheaper one first.
     #[must_use]
     #[inline]
     pub fn supply(&self, mode: OperatingMode, heat_w: f64, ambient_k: f64, lift_k: f64) -> Supply {
-        let cop = match mode {
-            OperatingMode::Heating => self.heating_cop.at(lift_k),
-            OperatingMode::Cooling => self.cooling_cop.at(lift_k),
-            OperatingMode::Passive => return Supply { power_w: 0.0, backup_w: 0.0, unmet_w: 0.0 },
+        let Some((cop, limit)) = self.unit(mode, lift_k) else {
+            return Supply { power_w: 0.0, backup_w: 0.0, unmet_w: 0.0 };
         };
-        let most_w = self.most_heat_w(mode, ambient_k, lift_k);
+        let most_w = limit.map_or(f64::INFINITY, |limit| limit.heat_w(ambient_k, cop));
         if heat_w <= most_w && cop >= 1.0 {
             return Supply { power_w: heat_w / cop, backup_w: 0.0, unmet_w: 0.0 };
         }
-        let most_backup_w = if mode == OperatingMode::Heating { self.backup_heater_w } else { 0.0 };
+        let most_backup_w = self.most_backup_w(mode);
         let (unit_w, backup_w) = if cop >= 1.0 {
             let unit_w = heat_w.min(most_w);
             (unit_w, (heat_w - unit_w).min(most_backup_w))

@@ -24,6 +24,14 @@ impl OperatingMode {
         }
     }
 
+    /// The temperature lift of the air unit in K, with ambient air and cabin in K: how much warmer the cabin is than the ambient air,
+    /// in cooling how much colder.
+    #[must_use]
+    #[inline]
+    pub fn lift_k(self, ambient_k: f64, cabin_k: f64) -> f64 {
+        if self == Self::Cooling { ambient_k - cabin_k } else { cabin_k - ambient_k }
+    }
+
     /// The mode of the paper's number.
     #[must_use]
     pub fn from_number(number: i64) -> Option<Self> {
@@ -44,7 +52,7 @@ pub struct Operation {
     pub radiant_heater_power_w: f64,
     /// Electric power of the air curtains in W.
     pub air_curtain_power_w: f64,
-    /// Of that, what its back-up heater takes.
+    /// Electric power of the back-up heater in W, a part of the air unit's.
     pub backup_heater_power_w: f64,
     /// Heat that the air unit brings in W, negative when cooling.
     pub air_unit_heat_w: f64,
@@ -65,7 +73,7 @@ impl Operation {
     /// State of the radiant heaters.
     #[must_use]
     pub fn heaters(&self) -> Heaters {
-        if self.devices.radiant_heaters { Heaters::On } else { Heaters::Off }
+        self.devices.heaters()
     }
 
     /// Total power in W (paper, eq. phvactot).

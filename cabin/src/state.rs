@@ -12,11 +12,6 @@ use crate::{Cabin, Design, Devices, Heaters, OperatingMode, Slopes, Temperatures
 pub enum Target {
     /// A cabin temperature in K.
     CabinTemperature(f64),
-    /// No heat from the air unit, with the air curtains on or off.
-    Passive {
-        /// Whether the air curtains run.
-        curtain: bool,
-    },
     /// A mean vote of the passengers.
     Vote(f64),
     /// Heat from the air unit along a line over the cabin temperature.
@@ -30,6 +25,14 @@ pub enum Target {
         /// Cabin temperature in K.
         at_k: f64,
     },
+}
+
+impl Target {
+    /// No heat from the air unit, with the air curtains on or off.
+    #[must_use]
+    pub fn passive(curtain: bool) -> Self {
+        Self::Heat { curtain, heat_w: 0.0, per_k: 0.0, at_k: 0.0 }
+    }
 }
 
 /// A steady state, or the guess of one.
@@ -126,11 +129,8 @@ impl Cabin<'_> {
             OperatingMode::Cooling => -1.0,
             OperatingMode::Passive => return None,
         };
-        let most_w = |cabin_k: f64| {
-            let lift_k = sign * (cabin_k - self.ambient_k);
-            sign * design.capacity_w(mode, self.ambient_k, lift_k)
-        };
-        let heaters = if devices.radiant_heaters { Heaters::On } else { Heaters::Off };
+        let most_w =
+            |cabin_k: f64| sign * design.capacity_w(mode, self.ambient_k, mode.lift_k(self.ambient_k, cabin_k));
         let mut state = *guess;
         for _ in 0..MOST_STEPS {
             let at_k = state.temperatures.cabin_k;
@@ -138,7 +138,7 @@ impl Cabin<'_> {
             // What rises with the temperature here is a rounding error.
             let per_k = ((most_w(at_k + SLOPE_STEP_K) - heat_w) / SLOPE_STEP_K).min(0.0);
             let target = Target::Heat { curtain: devices.air_curtain, heat_w, per_k, at_k };
-            if !self.settle_state(target, heaters, &mut state) {
+            if !self.settle_state(target, devices.heaters(), &mut state) {
                 return None;
             }
             if (state.temperatures.cabin_k - at_k).abs() < SETTLED_K {
@@ -160,12 +160,6 @@ impl Cabin<'_> {
         let cabin_step_k = match target {
             Target::CabinTemperature(_) => 0.0,
             Target::Vote(vote) => (vote - pmv) / pmv_slope,
-            Target::Passive { curtain } => {
-                let (heat_w, slope_w_k) = self.air_unit_heat_w(&state.temperatures, &slopes, curtain);
-                let [heater_k, interior_k, inside_k, _] = linear.shift_k;
-                let shift_w = self.g_heater * heater_k + self.g_interior * interior_k + self.g_shell * inside_k;
-                (shift_w - heat_w) / slope_w_k
-            }
             Target::Heat { curtain, heat_w, per_k, at_k } => {
                 let (taken_w, slope_w_k) = self.air_unit_heat_w(&state.temperatures, &slopes, curtain);
                 let [heater_k, interior_k, inside_k, _] = linear.shift_k;

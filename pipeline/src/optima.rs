@@ -25,7 +25,7 @@ pub(crate) fn solve(
     if store.stage(RecordedStage::Solve)?.is_some_and(|record| record.key == key) {
         return work(0, 0, &points.to_string(), store);
     }
-    let limited = study.grid.designs().iter().find(|d| d.is_limited() || d.backup_heater_w > 0.0);
+    let limited = study.grid.designs().iter().find(|d| d.is_limited());
     if let Some(design) = limited.filter(|_| study.method != Method::Fast) {
         return Err(PipelineError::Request(format!(
             "the nonlinear programs know no limits and no back-up heaters, which design {:?} has; solve it by --method fast",

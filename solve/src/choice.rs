@@ -13,7 +13,7 @@ pub(crate) struct Choice {
     pub mode: OperatingMode,
     pub air_unit_heat_w: f64,
     ambient_k: f64,
-    /// How much warmer the cabin is than the ambient air.
+    /// That of the mode.
     lift_k: f64,
     radiant_heater_power_w: f64,
     air_curtain_power_w: f64,
@@ -58,7 +58,7 @@ impl Best {
             mode,
             air_unit_heat_w,
             ambient_k: cabin.ambient_k(),
-            lift_k: cabin_k - cabin.ambient_k(),
+            lift_k: mode.lift_k(cabin.ambient_k(), cabin_k),
             radiant_heater_power_w,
             air_curtain_power_w: if devices.air_curtain { cabin.air_curtain_power_w() } else { 0.0 },
         })
@@ -81,8 +81,7 @@ impl Choice {
     /// What it takes with a design's COP and limits.
     #[inline]
     pub fn powers(&self, design: &Design) -> Powers {
-        let lift_k = if self.mode == OperatingMode::Cooling { -self.lift_k } else { self.lift_k };
-        let supply = design.supply(self.mode, self.air_unit_heat_w.abs(), self.ambient_k, lift_k);
+        let supply = design.supply(self.mode, self.air_unit_heat_w.abs(), self.ambient_k, self.lift_k);
         let (radiant_heater_w, air_curtain_w) = (self.radiant_heater_power_w, self.air_curtain_power_w);
         Powers {
             air_unit_w: supply.power_w,
@@ -111,6 +110,7 @@ pub(crate) enum Cheapest {
 }
 
 /// The cheapest choice that the design has, and how much more the next one costs.
+#[inline]
 pub(crate) fn cheapest(design: &Design, bests: &[Option<Best>; 4]) -> Cheapest {
     let mut least: Option<(usize, Powers)> = None;
     let mut second_w = f64::INFINITY;

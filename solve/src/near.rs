@@ -211,7 +211,7 @@ impl Search<'_, '_> {
     fn passive(&self, from: &State, curtain: bool) -> Option<State> {
         let (heat_w, slope_w_k) = self.cabin.air_unit_heat_w(&from.temperatures, &from.slopes, curtain);
         let vote = from.pmv - heat_w / slope_w_k * from.pmv_slope;
-        self.cabin.state(Target::Passive { curtain }, self.heaters, &self.toward(from, vote))
+        self.cabin.state(Target::passive(curtain), self.heaters, &self.toward(from, vote))
     }
 
     /// A guess from a state; a rough one has no slopes to follow.

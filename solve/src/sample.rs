@@ -79,9 +79,8 @@ impl<'a> SampleSolver<'a> {
     fn limited(&self, cabin: &Cabin<'_>, design: usize, window: usize, bests: &[Option<Best>; 4]) -> Outcome {
         let (design, window) = (&self.grid.designs()[design], &self.grid.windows()[window]);
         match nearest(cabin, design, bests, window, &cabin.rough_state(START_K)) {
-            Some(Nearest { choice, state, powers, .. }) => {
-                let heaters = if choice.devices.radiant_heaters { Heaters::On } else { Heaters::Off };
-                let state = SteadyState::new(cabin, heaters, &state);
+            Some(Nearest { choice, state, powers }) => {
+                let state = SteadyState::new(cabin, choice.devices.heaters(), &state);
                 Outcome::Solved(operation(&choice, &powers, &state), None)
             }
             None => Outcome::NotConverged,

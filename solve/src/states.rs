@@ -185,7 +185,7 @@ impl States {
         let (before, state) = self.fixed_before(from + 1);
         let (heat_w, slope_w_k) = heat(state);
         let vote = state.pmv - heat_w / slope_w_k * state.pmv_slope;
-        self.settled(cabin, Target::Passive { curtain }, state.toward(vote, before))
+        self.settled(cabin, Target::passive(curtain), state.toward(vote, before))
     }
 }
 

@@ -1,7 +1,7 @@
 //! Designs whose air unit is limited, and back-up heaters.
 
 use cabin::{
-    Cabin, ComfortWindow, Design, Devices, Disturbances, Heaters, Heating, LimitOf, OperatingMode, Optimum, Outcome,
+    Cabin, ComfortWindow, Design, Devices, Disturbances, Heating, LimitOf, OperatingMode, Optimum, Outcome,
     PassengerViews, PowerLimit, Target, Vehicle, kelvin,
 };
 use solve::{Bus, Grid, SampleSolver, YearSamples, YearStates};
@@ -67,7 +67,7 @@ fn prop_no_state_that_the_limits_allow_is_nearer_to_the_window() {
             let words = if o.unmet_heat_w > 0.0 { "limited" } else { "solved" };
             assert_eq!(optimum.outcome.words(), words);
             for devices in Devices::CHOICES {
-                let heaters = if devices.radiant_heaters { Heaters::On } else { Heaters::Off };
+                let heaters = devices.heaters();
                 for step in 0..400 {
                     let cabin_k = kelvin(-25.0 + 0.2 * f64::from(step));
                     let guess = cabin.rough_state(cabin_k);
@@ -75,8 +75,7 @@ fn prop_no_state_that_the_limits_allow_is_nearer_to_the_window() {
                     let t = &state.temperatures;
                     let heat_w = cabin.air_unit_heat_w(t, &state.slopes, devices.air_curtain).0;
                     let mode = if heat_w > 0.0 { OperatingMode::Heating } else { OperatingMode::Cooling };
-                    let warmer_k = cabin_k - cabin.ambient_k();
-                    let lift_k = if heat_w > 0.0 { warmer_k } else { -warmer_k };
+                    let lift_k = mode.lift_k(cabin.ambient_k(), cabin_k);
                     let heater_w = if devices.radiant_heaters { cabin.radiant_heater_power_w(t) } else { 0.0 };
                     if heater_w < 0.0 || heat_w.abs() > hp.capacity_w(mode, cabin.ambient_k(), lift_k) {
                         continue;

@@ -224,7 +224,7 @@ impl Store {
         points: impl Iterator<Item = NewOptimum<'a>>,
     ) -> Result<(), StoreError> {
         self.drive(async |c| {
-            // Three lookups a row cost a third of the time; that rows have what they refer to is seen once for all of them.
+            // Three lookups a row cost a fifth of the time; that rows have what they refer to is seen once for all of them.
             sqlx::query("PRAGMA foreign_keys = OFF").execute(&mut *c).await?;
             let written = write(c, grid, points).await;
             sqlx::query("PRAGMA foreign_keys = ON").execute(c).await?;

@@ -49,7 +49,7 @@ pub(crate) fn design_key(
     let mut parts = vec![row.heating.name(), &row.heating_cop, &row.cooling_cop, &rest, &vehicle];
     // One without limits is what it was before there were any.
     let limits = format!("{:?} {:?} {}", design.heating_limit, design.cooling_limit, design.backup_heater_w);
-    if design.is_limited() || design.backup_heater_w > 0.0 {
+    if design.is_limited() {
         parts.push(&limits);
     }
     let neighbours: Vec<String> = windows.iter().map(|w| format!("{} {}", w.pmv_min(), w.pmv_max())).collect();
@@ -123,7 +123,7 @@ pub fn settings(study: &Study, stage: &str) -> BTreeMap<String, String> {
             for (row, design) in study.design_rows.iter().zip(study.grid.designs()) {
                 let mut of_design =
                     |key: &str, value: String| settings.insert(format!("designs.{:?}.{key}", row.name), value);
-                if design.is_limited() || design.backup_heater_w > 0.0 {
+                if design.is_limited() {
                     let limits = [&design.heating_limit, &design.cooling_limit].map(|limit| format!("{limit:?}"));
                     of_design("limits", format!("{}, back-up heater {} W", limits.join(", "), design.backup_heater_w));
                 }

@@ -187,7 +187,7 @@ impl Context<'_> {
             }
             // The programs know neither limits nor back-up heaters.
             let spec = &self.study.grid.designs()[design];
-            if !self.chosen(row) || spec.is_limited() || spec.backup_heater_w > 0.0 {
+            if !self.chosen(row) || spec.is_limited() {
                 continue;
             }
             let fast = fast.get_or_insert_with(|| {
@@ -255,11 +255,11 @@ impl Context<'_> {
         table.check(Kind::Balances, residual_w <= allowed_w, residual_w, || at(&format!("{residual_w} W left over")));
 
         let excess = (o.pmv - comfort.pmv_max()).max(comfort.pmv_min() - o.pmv).max(0.0);
-        let lift_k = t.cabin_k - cabin.ambient_k();
         if o.unmet_heat_w > 0.0 {
             // Outside its window only where all that the design has is given.
-            let lift_k = if o.mode == OperatingMode::Cooling { -lift_k } else { lift_k };
-            let left_w = (design.capacity_w(o.mode, cabin.ambient_k(), lift_k) - o.air_unit_heat_w.abs()).abs();
+            let lift_k = o.mode.lift_k(cabin.ambient_k(), t.cabin_k);
+            let most_w = design.capacity_w(o.mode, cabin.ambient_k(), lift_k);
+            let left_w = (most_w - o.air_unit_heat_w.abs()).abs();
             let given = left_w <= 1e-3 && excess > 0.0;
             table.check(Kind::Window, given, left_w, || at(&format!("{left_w} W are left, PMV {}", o.pmv)));
         } else {
@@ -293,8 +293,7 @@ impl Context<'_> {
 
     /// The three parts of the power, as stored and as the operation's heat and temperatures give them, in W.
     fn parts(&self, design: &Design, cabin: &Cabin<'_>, o: &Operation) -> [(f64, f64); 3] {
-        let lift_k = o.temperatures.cabin_k - cabin.ambient_k();
-        let lift_k = if o.mode == OperatingMode::Cooling { -lift_k } else { lift_k };
+        let lift_k = o.mode.lift_k(cabin.ambient_k(), o.temperatures.cabin_k);
         let air_unit_w = design.supply(o.mode, o.air_unit_heat_w.abs(), cabin.ambient_k(), lift_k).power_w;
         let heaters_w = if o.devices.radiant_heaters { cabin.radiant_heater_power_w(&o.temperatures) } else { 0.0 };
         let curtain_w = if o.devices.air_curtain { cabin.air_curtain_power_w() } else { 0.0 };
