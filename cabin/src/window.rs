@@ -18,6 +18,9 @@ pub struct WindowError {
 }
 
 impl ComfortWindow {
+    /// Limit of the window that is shown where only one is: the one that the paper compares designs with.
+    const SHOWN_LIMIT: f64 = 1.0;
+
     /// A window `[pmv_min, pmv_max]` within the scale −3 … 3.
     ///
     /// # Errors
@@ -55,6 +58,18 @@ impl ComfortWindow {
     #[must_use]
     pub fn is_symmetric(&self) -> bool {
         self.pmv_min == -self.pmv_max
+    }
+
+    /// Whether it is `[-limit, limit]`.
+    #[must_use]
+    pub fn is_within(&self, limit: f64) -> bool {
+        self.is_symmetric() && self.pmv_max == limit
+    }
+
+    /// The window that stands for several where only one is shown: ±1, or else the middle one; `None` of none.
+    #[must_use]
+    pub fn shown(windows: &[Self]) -> Option<Self> {
+        windows.iter().find(|w| w.is_within(Self::SHOWN_LIMIT)).or_else(|| windows.get(windows.len() / 2)).copied()
     }
 
     /// The larger distance of a limit from neutral; for `[-L, L]` it is `L`.

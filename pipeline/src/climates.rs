@@ -2,6 +2,7 @@
 //! reference year, solved without storing anything.
 
 use ::report::{Climate, Climates};
+use cabin::ComfortWindow;
 use chrono::TimeDelta;
 use ingest::Content;
 use ingest::mission::Segment;
@@ -41,11 +42,11 @@ pub fn climates(study: &Study, files: &[PathBuf]) -> Result<Climates, PipelineEr
         all.push(under(&name, &weather, &site)?);
     }
     let windows = study.grid.windows();
-    let usual = |w: &cabin::ComfortWindow| w.is_symmetric() && w.pmv_limit() == 1.0;
+    let shown = ComfortWindow::shown(windows);
     Ok(Climates {
         designs: study.grid.designs().iter().map(|d| d.name.clone()).collect(),
         windows: windows.to_vec(),
-        shown: windows.iter().position(usual).unwrap_or(windows.len() / 2),
+        shown: windows.iter().position(|w| Some(*w) == shown).unwrap_or_default(),
         all,
     })
 }

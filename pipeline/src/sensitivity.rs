@@ -1,20 +1,19 @@
 //! What the year of a study depends on: one input at a time, and all of them together.
 
-use ::sensitivity::{Analysis, AnalysisError, Quantified, Resamples, SENSITIVITY_VERSION, Saltelli, Variation};
-use cabin::{Devices, Heating};
+use ::sensitivity::{
+    Analysis, AnalysisError, Quantified, RESAMPLES, Resamples, SENSITIVITY_VERSION, Saltelli, Variation,
+};
 use ingest::sample::Sample;
 use solve::Grid;
 use std::collections::BTreeMap;
 use store::{
-    IndexRow, InputRow, RecordedStage, ResultOf, Sensitivities, SensitivityResult, StageRecord, Store, SwingRow,
+    DesignRow, IndexRow, InputRow, RecordedStage, ResultOf, Sensitivities, SensitivityResult, StageRecord, Store,
+    SwingRow,
 };
 use study::{Study, keys};
 
 use crate::variants::year;
 use crate::{PipelineError, Progress, Work, freshness, open};
-
-/// Drawn years of which an interval is made.
-const RESAMPLES: usize = 400;
 
 /// Key of a sensitivity study: samples, designs, the bus and which inputs vary.
 pub(crate) fn sensitivity_key(study: &Study, store: &mut Store) -> Result<String, PipelineError> {
@@ -65,8 +64,7 @@ pub(crate) fn sensitivity(study: &Study, store: &mut Store, progress: &dyn Progr
         return Err(PipelineError::Request("there are no samples yet; run `busclimate run` first".to_owned()));
     }
     let grid = Grid::new(study.grid.designs().to_vec(), vec![asked.window]).expect("the names are those of a grid");
-    let plain = |row: &store::DesignRow| row.heating == Heating::Ptc && row.devices == Devices::NONE;
-    let reference = study.design_rows.iter().position(plain);
+    let reference = study.design_rows.iter().position(DesignRow::is_plain_resistive);
     let year = year(&samples, &Variation::none(&study.vehicle));
     let analysis = Analysis::new(&year, &study.vehicle, &grid, reference);
     let (base, swings) = analysis.one_at_a_time(&asked.inputs).map_err(failure)?;

@@ -1,14 +1,14 @@
 //! What the year of a bus depends on.
 
-use ::sensitivity::{Analysis, AnalysisError, Input, Quantified, Resamples, Saltelli, Swing};
+use ::sensitivity::{Analysis, AnalysisError, Input, Quantified, RESAMPLES, Resamples, Saltelli, Swing};
 use arrow_array::{ArrayRef, Float64Array, Int64Array, StringArray};
-use cabin::{Devices, Heating};
 use pyo3::prelude::*;
 use pyo3::types::PyAny;
 use pyo3_arrow::PyTable;
 use pyo3_arrow::input::AnyRecordBatch;
 use solve::Grid;
 use std::sync::Arc;
+use store::DesignRow;
 use study::Study;
 use toml::{Table, Value};
 
@@ -16,9 +16,6 @@ use crate::arrow::table;
 use crate::errors::{argument, data};
 use crate::parameters::year;
 use crate::settings;
-
-/// Drawn years of which an interval is made, as in the program.
-const RESAMPLES: usize = 400;
 
 /// What the annual figures depend on: each input at its low and its high value, and Sobol' indices of all together.
 ///
@@ -79,8 +76,7 @@ pub fn sensitivity(
     py.detach(|| {
         let asked = &study.sensitivity;
         let grid = Grid::new(study.grid.designs().to_vec(), vec![asked.window]).map_err(|e| argument("designs", e))?;
-        let plain = |row: &store::DesignRow| row.heating == Heating::Ptc && row.devices == Devices::NONE;
-        let reference = study.design_rows.iter().position(plain);
+        let reference = study.design_rows.iter().position(DesignRow::is_plain_resistive);
         let analysis = Analysis::new(&year, &study.vehicle, &grid, reference);
         let failed = |error: AnalysisError| argument("inputs", error);
         let (base, swings) = analysis.one_at_a_time(&asked.inputs).map_err(failed)?;

@@ -1,6 +1,6 @@
 //! Everything that a report says: rows of the database, and what the study rests on.
 
-use cabin::{ComfortWindow, Devices, Heating, Vehicle};
+use cabin::{ComfortWindow, Vehicle};
 use chrono_tz::Tz;
 use ingest::FileRecord;
 use store::{
@@ -10,9 +10,6 @@ use store::{
     SimulationFailure, SpreadRow, StatusCounts, TraceWindow, VariantSetting, VariantYear, VoteBin,
 };
 use study::assumptions::Assumption;
-
-/// The limit of the window that single-window tables show, where the study has it.
-pub(crate) const SHOWN_LIMIT: f64 = 1.0;
 
 /// Everything that a report says, in the order of the study.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -132,9 +129,7 @@ impl StudyReport {
 
     /// The window that stands for the study where only one is shown.
     pub(crate) fn shown_window(&self) -> Option<ComfortWindow> {
-        let windows = self.windows();
-        let shown = windows.iter().find(|w| w.is_symmetric() && w.pmv_limit() == SHOWN_LIMIT);
-        shown.or_else(|| windows.get(windows.len() / 2)).copied()
+        ComfortWindow::shown(&self.windows())
     }
 
     pub(crate) fn annual_power_w(&self, design: &str, window: ComfortWindow) -> Option<f64> {
@@ -170,7 +165,7 @@ impl StudyReport {
     /// The design that others are compared with: resistive heating and nothing else where the study has it, else the dearest.
     pub(crate) fn reference(&self, window: ComfortWindow) -> Option<(&str, f64)> {
         let of = |d: &'_ DesignRow| self.annual_power_w(&d.name, window);
-        let plain = |d: &&DesignRow| d.heating == Heating::Ptc && d.devices == Devices::NONE && of(d).is_some();
+        let plain = |d: &&DesignRow| d.is_plain_resistive() && of(d).is_some();
         let dearest = || {
             let solved = self.designs.iter().filter(|d| of(d).is_some());
             solved.max_by(|a, b| of(a).unwrap_or_default().total_cmp(&of(b).unwrap_or_default()))
@@ -190,7 +185,7 @@ impl StudyReport {
     /// Power of a design in one window over that in another, less 1, with its interval where the other one is ±1.
     pub(crate) fn change(&self, design: &str, window: ComfortWindow, from: ComfortWindow) -> Option<(f64, Ends)> {
         let from_w = self.annual_power_w(design, from).filter(|w| *w > 0.0)?;
-        let is_1 = from.is_symmetric() && from.pmv_limit() == 1.0;
+        let is_1 = from.is_within(1.0);
         let ends = self.interval(design, window).filter(|_| is_1).and_then(|r| r.change_vs_pmv_1);
         Some((self.annual_power_w(design, window)? / from_w - 1.0, ends))
     }

@@ -18,6 +18,9 @@ pub struct Index {
     pub total_ends: [f64; 2],
 }
 
+/// Drawn years of which an interval is made.
+pub const RESAMPLES: usize = 400;
+
 /// Base points drawn anew, of which intervals are made.
 #[derive(Debug, Clone)]
 pub struct Resamples(Vec<Vec<u32>>);

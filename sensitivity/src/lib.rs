@@ -15,7 +15,7 @@ mod saltelli;
 mod variation;
 
 pub use analysis::{Analysis, AnalysisError, Solved, Spreading, Swing};
-pub use indices::{Index, Resamples, indices};
+pub use indices::{Index, RESAMPLES, Resamples, indices};
 pub use input::{Input, Spread};
 pub use result::{Quantified, Quantity};
 pub use saltelli::{MOST_INPUTS, MOST_POINTS, Saltelli};

@@ -20,24 +20,14 @@ pub fn sensitivities(all: &Sensitivities) -> Result<(), Failure> {
             result.sd_value
         ))?;
         let mut swings: Vec<&SwingRow> = all.swings.iter().filter(|s| s.of == result.of).collect();
-        swings.sort_by(|a, b| width(b).total_cmp(&width(a)));
+        swings.sort_by(|a, b| b.width().total_cmp(&a.width()));
         for swing in swings.into_iter().take(NAMED) {
             let [_, low, high] = swing.inputs;
             let index = all.indices.iter().find(|i| i.of == swing.of && i.input == swing.input);
             let index = index.map_or_else(String::new, |i| format!("; S {:.2}, S_T {:.2}", i.first[0], i.total[0]));
-            let [at_low, at_high] = [1, 2].map(|end| change(swing, end));
+            let [at_low, at_high] = swing.changes().map(|change| change.unwrap_or(f64::NAN));
             say(format_args!("  {} {low} … {high}: {at_low:+.0} … {at_high:+.0} W{index}", swing.input.name))?;
         }
     }
     Ok(())
-}
-
-/// How far a swing goes.
-fn width(swing: &SwingRow) -> f64 {
-    let [_, low, high] = swing.values;
-    low.zip(high).map_or(0.0, |(low, high)| (high - low).abs())
-}
-
-fn change(swing: &SwingRow, end: usize) -> f64 {
-    swing.values[end].zip(swing.values[0]).map_or(f64::NAN, |(value, base)| value - base)
 }

@@ -29,6 +29,14 @@ pub struct DesignRow {
     pub design_key: String,
 }
 
+impl DesignRow {
+    /// Whether it is resistive heating and nothing else, which others are compared with.
+    #[must_use]
+    pub fn is_plain_resistive(&self) -> bool {
+        self.heating == Heating::Ptc && self.devices == Devices::NONE
+    }
+}
+
 /// The designs and windows that the database has, in the order of the study.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct StoredGrid {

@@ -64,6 +64,22 @@ pub struct SwingRow {
     pub values: [Option<f64>; 3],
 }
 
+impl SwingRow {
+    /// How far the result goes between the low value and the high one; 0 where it has none at one of them.
+    #[must_use]
+    pub fn width(&self) -> f64 {
+        let [_, low, high] = self.values;
+        low.zip(high).map_or(0.0, |(low, high)| (high - low).abs())
+    }
+
+    /// What the low and the high value change of the result in the bus.
+    #[must_use]
+    pub fn changes(&self) -> [Option<f64>; 2] {
+        let [base, low, high] = self.values;
+        [low, high].map(|value| Some(value? - base?))
+    }
+}
+
 /// A row of `sensitivity_index`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct IndexRow {

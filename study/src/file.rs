@@ -4,8 +4,7 @@
 use cabin::Vehicle;
 use ingest::weather::WeatherFormat;
 use schemars::JsonSchema;
-use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
-use serde::de::{Error as _, MapAccess, SeqAccess, Visitor};
+use serde::de::{Error as _, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 use simulate::Dynamics;
 use std::collections::BTreeMap;
@@ -249,8 +248,13 @@ pub struct Fetch {
 #[serde(deny_unknown_fields)]
 pub struct Comfort {
     pub pmv_limits: Option<Limits>,
-    pub windows: Option<Vec<[f64; 2]>>,
+    pub windows: Option<Vec<Pair>>,
 }
+
+/// Two numbers in brackets, and no more than two.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
+#[schemars(with = "[f64; 2]")]
+pub struct Pair(pub f64, pub f64);
 
 /// `{ from = 0.0, to = 2.0, step = 0.125 }` or `[0.25, 1.0]`.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
@@ -301,7 +305,7 @@ pub enum LimitOf {
 #[serde(untagged)]
 pub enum Limit {
     Constant(f64),
-    Table(Vec<[f64; 2]>),
+    Table(Vec<Pair>),
 }
 
 /// What a variant says: the value of an input, or under `designs` the names of those that it is for.
@@ -363,7 +367,7 @@ pub struct DesignCost {
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum Spread {
-    Ends([f64; 2]),
+    Ends(Pair),
     Named(NamedSpread),
 }
 
@@ -389,7 +393,7 @@ pub enum Heating {
 #[serde(untagged)]
 pub enum Cop {
     Name(String),
-    Table(Vec<[f64; 2]>),
+    Table(Vec<Pair>),
 }
 
 fn default_database() -> String {
@@ -468,128 +472,6 @@ fn in_file_order<'de, D: Deserializer<'de>, T: Deserialize<'de>>(source: D) -> R
         }
     }
     source.deserialize_map(InOrder(PhantomData))
-}
-
-impl<'de> Deserialize<'de> for Limits {
-    fn deserialize<D: Deserializer<'de>>(source: D) -> Result<Self, D::Error> {
-        struct Either;
-        impl<'de> Visitor<'de> for Either {
-            type Value = Limits;
-
-            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-                f.write_str("{ from = 0.0, to = 2.0, step = 0.125 } or a list such as [0.25, 1.0]")
-            }
-
-            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Limits, A::Error> {
-                Steps::deserialize(MapAccessDeserializer::new(map)).map(Limits::Steps)
-            }
-
-            fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<Limits, A::Error> {
-                Vec::deserialize(SeqAccessDeserializer::new(list)).map(Limits::List)
-            }
-        }
-        source.deserialize_any(Either)
-    }
-}
-
-impl<'de> Deserialize<'de> for Cop {
-    fn deserialize<D: Deserializer<'de>>(source: D) -> Result<Self, D::Error> {
-        struct Either;
-        impl<'de> Visitor<'de> for Either {
-            type Value = Cop;
-
-            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-                f.write_str("the name of a COP curve, or a table such as [[0.0, 4.4], [20.0, 2.0]]")
-            }
-
-            fn visit_str<E: serde::de::Error>(self, name: &str) -> Result<Cop, E> {
-                Ok(Cop::Name(name.to_owned()))
-            }
-
-            fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<Cop, A::Error> {
-                Vec::deserialize(SeqAccessDeserializer::new(list))
-                    .map(Cop::Table)
-                    .map_err(|e| A::Error::custom(format!("{e}; a COP table is a list of pairs [lift in K, COP]")))
-            }
-        }
-        source.deserialize_any(Either)
-    }
-}
-
-impl<'de> Deserialize<'de> for Limit {
-    fn deserialize<D: Deserializer<'de>>(source: D) -> Result<Self, D::Error> {
-        struct Either;
-        impl<'de> Visitor<'de> for Either {
-            type Value = Limit;
-
-            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-                f.write_str(
-                    "a number of W, or a table of [ambient temperature in °C, W] such as [[-20.0, 6e3], [10.0, 12e3]]",
-                )
-            }
-
-            fn visit_f64<E: serde::de::Error>(self, value: f64) -> Result<Limit, E> {
-                Ok(Limit::Constant(value))
-            }
-
-            fn visit_i64<E: serde::de::Error>(self, value: i64) -> Result<Limit, E> {
-                Ok(Limit::Constant(value as f64))
-            }
-
-            fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<Limit, A::Error> {
-                Vec::deserialize(SeqAccessDeserializer::new(list)).map(Limit::Table)
-            }
-        }
-        source.deserialize_any(Either)
-    }
-}
-
-impl<'de> Deserialize<'de> for Override {
-    fn deserialize<D: Deserializer<'de>>(source: D) -> Result<Self, D::Error> {
-        struct Either;
-        impl<'de> Visitor<'de> for Either {
-            type Value = Override;
-
-            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-                f.write_str("a number, or under `designs` a list of names")
-            }
-
-            fn visit_f64<E: serde::de::Error>(self, value: f64) -> Result<Override, E> {
-                Ok(Override::Value(value))
-            }
-
-            fn visit_i64<E: serde::de::Error>(self, value: i64) -> Result<Override, E> {
-                Ok(Override::Value(value as f64))
-            }
-
-            fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<Override, A::Error> {
-                Vec::deserialize(SeqAccessDeserializer::new(list)).map(Override::Designs)
-            }
-        }
-        source.deserialize_any(Either)
-    }
-}
-
-impl<'de> Deserialize<'de> for Spread {
-    fn deserialize<D: Deserializer<'de>>(source: D) -> Result<Self, D::Error> {
-        struct Either;
-        impl<'de> Visitor<'de> for Either {
-            type Value = Spread;
-
-            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-                f.write_str("[low, high], { mean = 1.0, sd = 0.1 } or { low = 0.8, mode = 1.0, high = 1.1 }")
-            }
-
-            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Spread, A::Error> {
-                NamedSpread::deserialize(MapAccessDeserializer::new(map)).map(Spread::Named)
-            }
-
-            fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<Spread, A::Error> {
-                <[f64; 2]>::deserialize(SeqAccessDeserializer::new(list)).map(Spread::Ends)
-            }
-        }
-        source.deserialize_any(Either)
-    }
 }
 
 /// A study file that cannot be used; says file, line, column and what to do.
@@ -727,7 +609,23 @@ mod tests {
         let message = error(&format!("{SHORT}[comfort]\npmv_limits = 3\n"));
         assert!(message.contains("{ from = 0.0, to = 2.0, step = 0.125 } or a list"), "{message}");
         let message = error(&format!("{SHORT}[designs.x]\nheating = \"hp\"\nheating_cop = [1.0]\n"));
-        assert!(message.contains("pairs [lift in K, COP]"), "{message}");
+        assert!(message.contains("[lift in K, COP]"), "{message}");
+        for (text, place, words) in [
+            ("[comfort]\npmv_limits = { from = 0.0, too = 2.0 }\n", "14:28", "did you mean `to`?"),
+            ("[comfort]\npmv_limits = [0.5, \"x\"]\n", "14:20", "expected f64"),
+            ("[comfort]\nwindows = [[-1.0, 1.0, 2.0]]\n", "14:12", "expected two numbers"),
+            ("[designs.x]\nheating = \"hp\"\nheating_cop = [[0.0, 4.0, 1.0]]\n", "15:16", "invalid length 3"),
+            ("[designs.x]\nheating = \"hp\"\nheating_limit_w = [[0.0]]\n", "15:20", "invalid length 1"),
+            ("[designs.x]\nheating = \"hp\"\nheating_limit_w = \"much\"\n", "15:19", "a number of W, or a table"),
+            ("[variants.x]\nroof_area_m2 = \"big\"\n", "14:16", "a number, or under `designs`"),
+            ("[variants.x]\ndesigns = [1]\n", "14:12", "expected a string"),
+            ("[sensitivity.inputs]\nroof_area_m2 = { mean = 1.0, sdd = 0.1 }\n", "14:30", "did you mean `sd`?"),
+            ("[sensitivity.inputs]\nroof_area_m2 = [1.0, 2.0, 3.0]\n", "14:16", "expected two numbers"),
+            ("[sensitivity.inputs]\nroof_area_m2 = 4\n", "14:16", "expected [low, high]"),
+        ] {
+            let message = error(&format!("{SHORT}{text}"));
+            assert!(message.starts_with(&format!("study.toml:{place}: ")) && message.contains(words), "{message}");
+        }
         assert!(error(&SHORT.replace("schema_version = 1", "schema_version = 9")).contains("this program reads 1"));
         assert!(error("schema_version = 1\nname = \"n\"\n").contains("location"));
     }

@@ -10,6 +10,7 @@ pub mod keys;
 mod ready;
 mod schema;
 pub mod settings;
+mod shapes;
 mod sources;
 pub mod template;
 mod variants;

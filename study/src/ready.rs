@@ -235,7 +235,7 @@ pub(crate) fn design((name, typed): &(String, file::Design)) -> Result<(Design, 
         let limit = match given {
             file::Limit::Constant(limit_w) => PowerLimit::constant(of, *limit_w),
             file::Limit::Table(rows) => {
-                PowerLimit::table(of, &rows.iter().map(|[ambient_c, w]| (*ambient_c, *w)).collect::<Vec<_>>())
+                PowerLimit::table(of, &rows.iter().map(|row| (row.0, row.1)).collect::<Vec<_>>())
             }
         };
         limit.map(Some).map_err(|e| format!("{key}: {e}"))
@@ -263,7 +263,7 @@ fn cop(
 ) -> Result<(Cop, String), String> {
     match given {
         Some(file::Cop::Table(rows)) => {
-            let pairs = rows.iter().map(|[lift, cop]| (*lift, *cop)).collect();
+            let pairs = rows.iter().map(|row| (row.0, row.1)).collect();
             let curve = Cop::table(pairs).map_err(|e| format!("{key}: {e}"))?;
             Ok((curve, canonical(rows)))
         }
@@ -329,7 +329,7 @@ pub(crate) fn windows(comfort: &file::Comfort) -> Result<Vec<ComfortWindow>, Str
         (None, Some(_)) => Vec::new(),
     };
     let symmetric = limits.iter().map(|&limit| ComfortWindow::symmetric(limit));
-    let unequal = comfort.windows.iter().flatten().map(|&[low, high]| ComfortWindow::new(low, high));
+    let unequal = comfort.windows.iter().flatten().map(|of| ComfortWindow::new(of.0, of.1));
     symmetric.chain(unequal).collect::<Result<_, _>>().map_err(|e| format!("[comfort] {e}"))
 }
 

@@ -144,8 +144,8 @@ fn values(study: &Study) -> Vec<(String, String)> {
                     of("cooling_cop", row.cooling_cop.clone());
                     of("radiant_heaters", row.devices.radiant_heaters.to_string());
                     of("air_curtain", row.devices.air_curtain.to_string());
-                    let pairs = value.as_array().into_iter().flatten();
-                    let typed = pairs.filter(|pair| pair[0] == row.name.as_str()).map(|pair| &pair[1]).next();
+                    let mut pairs = value.as_array().into_iter().flatten();
+                    let typed = pairs.find(|pair| pair[0] == row.name.as_str()).map(|pair| &pair[1]);
                     for key in ["heating_limit_w", "cooling_limit_w", "limits_are", "backup_heater_w"] {
                         match typed.map_or(&Value::Null, |typed| &typed[key]) {
                             Value::Null => {}

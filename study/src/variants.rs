@@ -110,10 +110,7 @@ pub(crate) fn sensitivity(typed: &file::StudyFile, grid: &Grid) -> Result<Sensit
     let windows = grid.windows();
     let window = match of.pmv_limit {
         Some(limit) => ComfortWindow::symmetric(limit).map_err(|e| wrong(e.to_string()))?,
-        None => {
-            let usual = windows.iter().find(|w| w.is_symmetric() && w.pmv_limit() == 1.0);
-            *usual.unwrap_or(&windows[windows.len() / 2])
-        }
+        None => ComfortWindow::shown(windows).expect("a grid has a window"),
     };
     let base = Variation::none(&typed.vehicle);
     let inputs: Vec<Input> = if of.inputs.is_empty() {
@@ -143,7 +140,7 @@ pub(crate) fn sensitivity(typed: &file::StudyFile, grid: &Grid) -> Result<Sensit
 
 fn spread_of(typed: &file::Spread) -> Result<Spread, String> {
     match typed {
-        file::Spread::Ends([low, high]) => Ok(Spread::Uniform { low: *low, high: *high }),
+        file::Spread::Ends(file::Pair(low, high)) => Ok(Spread::Uniform { low: *low, high: *high }),
         file::Spread::Named(named) => match (named.mean, named.sd, named.low, named.mode, named.high) {
             (Some(mean), Some(sd), None, None, None) => Ok(Spread::Normal { mean, sd }),
             (None, None, Some(low), Some(mode), Some(high)) => Ok(Spread::Triangular { low, mode, high }),

@@ -1,6 +1,7 @@
 //! Figures as SVG: pure functions of what they show, all drawn by one engine for one column of print.
 //!
-//! `chart` draws whatever has two axes, `bars` what many things do to a quantity, `heat_flow` the flows of one operation; `palette` says which colour means what.
+//! `chart` draws whatever has two axes, `bars` what many things do to a quantity, `heat_flow` the flows of one operation;
+//! `palette` says which colour means what.
 
 mod axis;
 mod bars;
