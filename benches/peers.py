@@ -1,11 +1,15 @@
 """busclimate beside other people's programs, each as its own documentation says: python3 benches/peers.py FOLDER PROGRAM
 
 FOLDER holds study.toml and ztbus/*.csv, such as `busclimate demo FOLDER --like metaData.csv` makes; PROGRAM is the release
-build. Python has the packages of tests/peers/requirements.txt and the wheel. Prints a table in Markdown.
+build. Python has the packages of tests/peers/requirements.txt and the wheel; benchmarks are built with cargo, and their
+instructions counted where there is valgrind. Prints a table in Markdown.
 """
 
+import json
 import os
 import pathlib
+import re
+import shutil
 import statistics
 import subprocess
 import sys
@@ -15,7 +19,9 @@ import time
 import casadi
 import duckdb
 import numpy as np
+import pandas as pd
 import polars as pl
+import pvlib
 import pyarrow as pa
 import pythermalcomfort
 from pythermalcomfort.models import pmv_ppd_iso
@@ -100,6 +106,33 @@ def by_ipopt():
     return float(took) / int(problems), int(problems)
 
 
+def kernel(package, bench, name):
+    """Items a second of one of our benchmarks, and what callgrind counts as instructions of an item."""
+    build = ["cargo", "bench", "-p", package, "--bench", bench, "--no-run", "--message-format=json"]
+    messages = subprocess.run(build, cwd=home, check=True, capture_output=True, text=True).stdout.splitlines()
+    built = [json.loads(message) for message in messages]
+    program = next(m["executable"] for m in built if m.get("executable") and m["target"]["name"] == bench)
+    shown = subprocess.run([program, "--bench", name], check=True, capture_output=True, text=True).stdout
+    # The third of fastest, slowest, median and mean.
+    rate, prefix = re.findall(r"([0-9.]+) ([KMG]?)item/s", shown)[2]
+    rate = float(rate) * {"": 1, "K": 1e3, "M": 1e6, "G": 1e9}[prefix]
+    if shutil.which("valgrind") is None:
+        return rate, "no valgrind"
+    time, unit = re.findall(r"([0-9.]+) (ns|µs|ms|s) ", shown.split(name)[1])[2]
+    items = rate * float(time) * {"ns": 1e-9, "µs": 1e-6, "ms": 1e-3, "s": 1}[unit]
+    counts = []
+    for times in (1, 2):
+        tool = ["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null"]
+        command = [*tool, program, "--bench", name, "--sample-count", "1", "--sample-size", str(times)]
+        said = subprocess.run(command, check=True, capture_output=True, text=True).stderr
+        counts.append(int(re.search(r"refs:\s+([0-9,]+)", said)[1].replace(",", "")))
+    return rate, f"{(counts[1] - counts[0]) / items:.0f} instructions"
+
+
+def positions_by_pvlib(times):
+    pvlib.solarposition.spa_python(times, 47.38, 8.54)
+
+
 def row(what, program, rate, unit, against=None, note=""):
     ratio = "" if against is None else f"{against / rate:.3g} times"
     print(f"| {what} | {program} | {rate:.3g} {unit} | {ratio} | {note} |", flush=True)
@@ -119,6 +152,20 @@ ours = len(air) / seconds(lambda: votes_of_busclimate(votes, votes))
 row("predicted mean votes", "busclimate.pmv", ours, "votes/s", note="all cores")
 peer = len(air[::20]) / seconds(lambda: votes_of_pythermalcomfort(air[::20], air[::20]))
 row("predicted mean votes", f"pythermalcomfort {pythermalcomfort.__version__}", peer, "votes/s", ours)
+
+ours, count = kernel("busclimate-shading", "sun", "year_of_hours")
+row("positions of the sun", "busclimate", ours, "positions/s", note=f"one core, {count}")
+times = pd.date_range("2022-01-01", periods=87_600, freq="h", tz="UTC")
+peer = len(times) / seconds(lambda: positions_by_pvlib(times))
+row("positions of the sun", f"pvlib {pvlib.__version__}", peer, "positions/s", ours, "spa_python, all at once")
+
+for what, unit, bench in [
+    ("optima", "optima/s", ("busclimate-solve", "optimum", "one_core")),
+    ("optima of many buses", "optima/s", ("busclimate-solve", "optimum", "many_buses")),
+    ("simulated seconds", "seconds/s", ("busclimate-simulate", "mission", "winter_in_100_variants")),
+]:
+    rate, count = kernel(*bench)
+    row(what, "busclimate", rate, unit, note=f"one core, {count}")
 
 points = 7400 * 85
 hours = pa.table({

@@ -277,6 +277,25 @@ fn cli_a_limited_unit_comes_near_and_says_how_near() {
         JOIN annual_average AS c USING (pmv_min, pmv_max) WHERE a.design = 'small hp' AND b.design = 'small hp+ptc'
         AND c.design = 'ptc' AND a.hvac_power_w < b.hvac_power_w AND b.hvac_power_w < c.hvac_power_w";
     assert_eq!(scratch.query(between), [["2"]]);
+    // A variant, and the bus of a variant, miss as many hours as the stored optima say; a colder one more.
+    add(
+        &scratch,
+        "[variants.\"same\"]\n[variants.\"colder\"]\nambient_offset_k = -8\n[sensitivity]\npoints = 4\n\
+         [sensitivity.inputs]\nambient_offset_k = [-8.0, 8.0]\nshell_area_m2 = [180.0, 220.0]\n",
+    );
+    scratch.expect(0, &["run", "--quiet"]);
+    let counts = "SELECT count(*) FILTER (WHERE v.base_limited_count = l.limited_count),
+        count(*) FILTER (WHERE v.variant = 'same' AND v.limited_count = l.limited_count),
+        count(*) FILTER (WHERE v.variant = 'colder' AND v.limited_count > l.limited_count)
+        FROM variant_annual AS v JOIN limited_annual AS l USING (design, pmv_min, pmv_max) WHERE design = 'small hp'";
+    assert_eq!(scratch.query(counts), [["4", "2", "2"]]);
+    let said = scratch.expect(0, &["sensitivity"]).stdout;
+    let of_pump = said.split("small hp:").nth(1).unwrap().lines().nth(1).unwrap();
+    assert!(of_pump.contains("misses the window for want of power in"), "{said}");
+    let counts = "SELECT design, limited_count > 0 FROM sensitivity_result
+        WHERE quantity = 'hvac_power_w' AND design LIKE '%hp' ORDER BY design";
+    assert_eq!(scratch.query(counts), [["ample hp", "0"], ["hp", "0"], ["small hp", "1"]]);
+
     let report = scratch.read("report/report.md");
     assert!(report.contains("limited design"), "{report}");
     let answer = report.lines().find(|line| line.contains("the least electricity.")).unwrap();

@@ -98,6 +98,7 @@ pub(crate) fn sensitivity(study: &Study, store: &mut Store, progress: &dyn Progr
                 ends: s.ends,
                 sets: design.sets() as u64,
                 unsolved: solved.unsolved,
+                limited: solved.limited[analysis.results()[s.result].design],
                 seed: asked.seed.into(),
             })
             .collect(),

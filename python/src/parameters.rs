@@ -44,7 +44,8 @@ struct Set {
 /// -------
 /// Table
 ///     A row for each set, design and window: set_id, design, pmv_limit, pmv_min, pmv_max, status, hvac_power_w, heating_power_w,
-///     cooling_power_w (annual means in W), sample_count, unsolved_count. A set with a constant outside its range gives rows without
+///     cooling_power_w (annual means in W), sample_count, unsolved_count, limited_count (samples that miss
+///     the window for want of power). A set with a constant outside its range gives rows without
 ///     numbers, whose status says what is wrong.
 ///
 /// Raises
@@ -166,6 +167,7 @@ fn means(base: &Study, sets: &[Set], results: &[Result<Vec<AnnualMean>, String>]
         ("cooling_power_w", real(|m| m.cooling_power_w)),
         ("sample_count", whole(|m| m.samples)),
         ("unsolved_count", whole(|m| m.unsolved)),
+        ("limited_count", whole(|m| m.limited)),
     ];
     table(columns.into_iter().map(|(name, values)| (name.to_owned(), values)).collect())
 }

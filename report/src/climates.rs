@@ -95,6 +95,7 @@ impl Climates {
                 optional(year.cooling_power_w),
                 year.samples.to_string(),
                 year.unsolved.to_string(),
+                year.limited.to_string(),
                 climate.excluded.to_string(),
             ]
         };
@@ -111,6 +112,7 @@ impl Climates {
             "cooling_power_w",
             "sample_count",
             "unsolved_count",
+            "limited_count",
             "excluded_count",
         ];
         let of_climate =

@@ -57,6 +57,8 @@ pub struct Solved {
     pub values: Vec<Vec<f64>>,
     /// Points of samples, designs, windows and sets without an operation.
     pub unsolved: u64,
+    /// Points of samples, windows and sets that miss the window, of each design by its place.
+    pub limited: Vec<u64>,
 }
 
 /// Why a study of all inputs has no end.
@@ -156,6 +158,7 @@ impl<'y> Analysis<'y> {
         design: &Saltelli,
         mut solved: impl FnMut(usize) -> bool,
     ) -> Result<Solved, AnalysisError> {
+        let grid = self.states.grid();
         let of_set = |set: usize| {
             let values: Vec<f64> = inputs.iter().zip(design.set(set)).map(|(i, u)| i.spread.quantile(u)).collect();
             let named = || inputs.iter().map(|i| i.name.as_str()).zip(values.iter().copied());
@@ -164,16 +167,21 @@ impl<'y> Analysis<'y> {
             let means = self.year(&self.base.with(named()).map_err(wrong)?).map_err(wrong)?;
             let results: Option<Vec<f64>> = self.values(&means).into_iter().collect();
             let unsolved: u64 = means.iter().map(|mean| mean.unsolved).sum();
-            Ok((results.ok_or_else(|| AnalysisError::NoResult(at()))?, unsolved))
+            let limited: Vec<u64> =
+                means.chunks(grid.windows().len()).map(|of| of.iter().map(|mean| mean.limited).sum()).collect();
+            Ok((results.ok_or_else(|| AnalysisError::NoResult(at()))?, unsolved, limited))
         };
-        let mut all = Solved { values: Vec::with_capacity(design.sets()), unsolved: 0 };
+        let limited = vec![0; grid.designs().len()];
+        let mut all = Solved { values: Vec::with_capacity(design.sets()), unsolved: 0, limited };
         while all.values.len() < design.sets() {
             let from = all.values.len();
             let to = (from + SETS_AT_ONCE).min(design.sets());
-            let results: Vec<(Vec<f64>, u64)> = (from..to).into_par_iter().map(of_set).collect::<Result<_, _>>()?;
-            for (values, unsolved) in results {
+            let results: Vec<(Vec<f64>, u64, Vec<u64>)> =
+                (from..to).into_par_iter().map(of_set).collect::<Result<_, _>>()?;
+            for (values, unsolved, limited) in results {
                 all.values.push(values);
                 all.unsolved += unsolved;
+                all.limited.iter_mut().zip(limited).for_each(|(all, of_set)| *all += of_set);
             }
             if !solved(to) {
                 return Err(AnalysisError::Stopped);

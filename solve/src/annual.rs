@@ -28,6 +28,17 @@ pub struct AnnualMean {
     pub samples: u64,
     /// Of these without an operation.
     pub unsolved: u64,
+    /// Of these with one that misses the window, within the design's limits the nearest.
+    pub limited: u64,
+}
+
+/// What a design does in a sample.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Used {
+    pub mode: OperatingMode,
+    pub hvac_power_w: f64,
+    /// Whether it misses the window.
+    pub is_limited: bool,
 }
 
 impl YearSamples {
@@ -64,6 +75,7 @@ pub(crate) fn year(points: usize, months: &[Vec<MonthSum>]) -> Vec<AnnualMean> {
 pub(crate) struct MonthSum {
     samples: u64,
     solved: u64,
+    limited: u64,
     heating_w: Sum,
     cooling_w: Sum,
     all_w: Sum,
@@ -76,32 +88,38 @@ fn month(vehicle: &Vehicle, views: &PassengerViews, grid: &Grid, samples: &[Dist
     for sample in samples {
         solver.solve(sample, &mut optima);
         for (sum, optimum) in sums.iter_mut().zip(&optima) {
-            sum.add(optimum.outcome.operation().map(|o| (o.mode, o.hvac_power_w())));
+            sum.add(optimum.outcome.operation().map(|o| Used {
+                mode: o.mode,
+                hvac_power_w: o.hvac_power_w(),
+                is_limited: o.unmet_heat_w > 0.0,
+            }));
         }
     }
     sums
 }
 
 impl MonthSum {
-    /// A sample with what the air unit does and the power in W, where there is an operation.
-    pub fn add(&mut self, operation: Option<(OperatingMode, f64)>) {
+    /// A sample with what the design does, where there is an operation.
+    pub fn add(&mut self, used: Option<Used>) {
         self.samples += 1;
-        let Some((mode, power_w)) = operation else { return };
+        let Some(used) = used else { return };
         self.solved += 1;
-        self.all_w.add(power_w);
-        match mode {
-            OperatingMode::Heating | OperatingMode::Passive => self.heating_w.add(power_w),
-            OperatingMode::Cooling => self.cooling_w.add(power_w),
+        self.limited += u64::from(used.is_limited);
+        self.all_w.add(used.hvac_power_w);
+        match used.mode {
+            OperatingMode::Heating | OperatingMode::Passive => self.heating_w.add(used.hvac_power_w),
+            OperatingMode::Cooling => self.cooling_w.add(used.hvac_power_w),
         }
     }
 }
 
 fn annual<'m>(months: impl Iterator<Item = &'m MonthSum>) -> AnnualMean {
     let (mut days, mut sums) = (Sum::default(), [Sum::default(); 3]);
-    let (mut samples, mut unsolved) = (0, 0);
+    let (mut samples, mut unsolved, mut limited) = (0, 0, 0);
     for (of_month, days_of_month) in months.zip(DAYS_OF_MONTH) {
         samples += of_month.samples;
         unsolved += of_month.samples - of_month.solved;
+        limited += of_month.limited;
         if of_month.solved == 0 {
             continue;
         }
@@ -112,7 +130,7 @@ fn annual<'m>(months: impl Iterator<Item = &'m MonthSum>) -> AnnualMean {
     }
     let [hvac_power_w, heating_power_w, cooling_power_w] =
         sums.map(|sum| (days.value() > 0.0).then(|| sum.value() / days.value()));
-    AnnualMean { hvac_power_w, heating_power_w, cooling_power_w, samples, unsolved }
+    AnnualMean { hvac_power_w, heating_power_w, cooling_power_w, samples, unsolved, limited }
 }
 
 /// A compensated sum.

@@ -13,8 +13,8 @@ use rayon::prelude::*;
 use std::sync::Arc;
 
 use crate::Grid;
-use crate::annual::{AnnualMean, MonthSum, YearSamples, year};
-use crate::choice::{Best, Cheapest, cheapest, nearest};
+use crate::annual::{AnnualMean, MonthSum, Used, YearSamples, year};
+use crate::choice::{Best, Cheapest, Powers, cheapest, nearest};
 use crate::states::START_K;
 
 /// Where the search for the optima of a sample in a window starts, and what the unit does there; with the heaters off and on.
@@ -80,9 +80,9 @@ impl<'y> YearStates<'y> {
                         let nearest = || {
                             let guess = start.map(|start| start.states[0])?;
                             let nearest = nearest(&cabin, spec, &bests, window, &guess)?;
-                            Some((nearest.choice.mode, nearest.powers.total_w))
+                            Some(used(nearest.choice.mode, &nearest.powers))
                         };
-                        sums[design * windows.len() + place].add(operation(&bests, spec, nearest));
+                        sums[design * windows.len() + place].add(of_design(&bests, spec, nearest));
                     }
                 }
             }
@@ -93,21 +93,20 @@ impl<'y> YearStates<'y> {
     }
 }
 
-/// What the unit of a design does in the cheapest choice, or in the `nearest` one where none meets the window within its limits,
-/// and the power in W.
-fn operation(
-    bests: &[Option<Best>; 4],
-    design: &Design,
-    nearest: impl FnOnce() -> Option<(OperatingMode, f64)>,
-) -> Option<(OperatingMode, f64)> {
+/// What a design does in the cheapest choice, or in the `nearest` one where none meets the window within its limits.
+fn of_design(bests: &[Option<Best>; 4], design: &Design, nearest: impl FnOnce() -> Option<Used>) -> Option<Used> {
     match cheapest(design, bests) {
         Cheapest::Choice { place, powers, .. } => match bests[place] {
-            Some(Best::Found(choice)) => Some((choice.mode, powers.total_w)),
+            Some(Best::Found(choice)) => Some(used(choice.mode, &powers)),
             _ => None,
         },
         Cheapest::Limited => nearest(),
         Cheapest::Infeasible(_) | Cheapest::NotConverged => None,
     }
+}
+
+fn used(mode: OperatingMode, powers: &Powers) -> Used {
+    Used { mode, hvac_power_w: powers.total_w, is_limited: powers.unmet_heat_w > 0.0 }
 }
 
 impl Start {

@@ -142,9 +142,10 @@ fn prop_years_of_many_limited_buses_are_those_of_their_optima() {
         design.backup_heater_w = 800.0;
     }
     let grid = Grid::new(designs, windows()).expect("valid");
+    let of_year: Vec<Disturbances> = year().into_iter().step_by(53).collect();
     let mut all = YearSamples::default();
-    for (i, sample) in year().into_iter().step_by(53).enumerate() {
-        all.add((i % 12) as u8 + 1, sample);
+    for (i, sample) in of_year.iter().enumerate() {
+        all.add((i % 12) as u8 + 1, *sample);
     }
     let bus = Bus {
         vehicle: vehicle.clone(),
@@ -155,8 +156,16 @@ fn prop_years_of_many_limited_buses_are_those_of_their_optima() {
     for (near, mean) in near.iter().zip(all.means(&vehicle, &grid)) {
         let (a, b) = (near.hvac_power_w.expect("solved"), mean.hvac_power_w.expect("solved"));
         assert!((a - b).abs() < 1e-8 * b.max(1.0), "{near:?} {mean:?}");
-        assert_eq!(near.unsolved, mean.unsolved);
+        assert_eq!((near.unsolved, near.limited), (mean.unsolved, mean.limited));
     }
+    let mut limited = vec![0; grid.points()];
+    for optima in solve(grid.designs().to_vec(), &of_year) {
+        for (count, optimum) in limited.iter_mut().zip(&optima) {
+            *count += u64::from(optimum.outcome.words() == "limited");
+        }
+    }
+    assert_eq!(near.iter().map(|mean| mean.limited).collect::<Vec<_>>(), limited);
+    assert!(limited.iter().any(|count| *count > 0));
 }
 
 #[test]

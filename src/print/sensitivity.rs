@@ -19,6 +19,10 @@ pub fn sensitivities(all: &Sensitivities) -> Result<(), Failure> {
             result.mean_value,
             result.sd_value
         ))?;
+        if result.limited > 0 {
+            let hours = result.limited as f64 / result.sets as f64;
+            say(format_args!("  misses the window for want of power in {hours:.1} hours a set"))?;
+        }
         let mut swings: Vec<&SwingRow> = all.swings.iter().filter(|s| s.of == result.of).collect();
         swings.sort_by(|a, b| b.width().total_cmp(&a.width()));
         for swing in swings.into_iter().take(NAMED) {

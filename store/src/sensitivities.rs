@@ -38,6 +38,8 @@ pub struct SensitivityResult {
     pub sets: u64,
     /// Points of all of them without an operation.
     pub unsolved: u64,
+    /// Points of all of them in which the design misses the window, for want of power.
+    pub limited: u64,
     /// Seed.
     pub seed: u64,
 }
@@ -141,6 +143,7 @@ impl Store {
                 ends: [r.try_get("low_value")?, r.try_get("high_value")?],
                 sets: count(r, "set_count")?,
                 unsolved: count(r, "unsolved_count")?,
+                limited: count(r, "limited_count")?,
                 seed: count(r, "seed")?,
             })
         })?;
@@ -190,6 +193,7 @@ async fn put(c: &mut SqliteConnection, run_id: i64, all: &Sensitivities) -> Resu
             .set("high_value", row.ends[1])?
             .set("set_count", row.sets.cast_signed())?
             .set("unsolved_count", row.unsolved.cast_signed())?
+            .set("limited_count", row.limited.cast_signed())?
             .set("seed", row.seed.cast_signed())
     })
     .await?;

@@ -38,6 +38,10 @@ pub struct VariantYear {
     pub base_hvac_power_w: Option<f64>,
     /// Samples that are not solved.
     pub unsolved: u64,
+    /// Samples in which the variant misses the window, for want of power.
+    pub limited: u64,
+    /// Samples in which the bus does.
+    pub base_limited: u64,
 }
 
 /// A row of `variant_setting`.
@@ -73,6 +77,8 @@ impl Store {
                 cooling_power_w: r.try_get("cooling_power_w")?,
                 base_hvac_power_w: r.try_get("base_hvac_power_w")?,
                 unsolved: count(r, "unsolved_count")?,
+                limited: count(r, "limited_count")?,
+                base_limited: count(r, "base_limited_count")?,
             })
         })
     }
@@ -129,6 +135,8 @@ pub(crate) async fn put(
                 .set("relative_change", powers.filter(|(_, base)| *base > 0.0).map(|(own, base)| own / base - 1.0))?
                 .set("sample_count", own.samples.cast_signed())?
                 .set("unsolved_count", own.unsolved.cast_signed())?
+                .set("limited_count", own.limited.cast_signed())?
+                .set("base_limited_count", base.limited.cast_signed())?
                 .set("run_id", run_id)
         })
         .await?;

@@ -138,6 +138,7 @@ fn data(study: &StudyReport) -> Vec<DataTable> {
             ("high_value", &|r: &SensitivityResult| r.ends[1].to_string()),
             ("set_count", &|r: &SensitivityResult| r.sets.to_string()),
             ("unsolved_count", &|r: &SensitivityResult| r.unsolved.to_string()),
+            ("limited_count", &|r: &SensitivityResult| r.limited.to_string()),
             ("seed", &|r: &SensitivityResult| r.seed.to_string()),
         ],
     );

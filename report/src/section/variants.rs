@@ -30,10 +30,11 @@ pub(super) fn section(study: &StudyReport) -> Option<Section> {
             watts(row.base_hvac_power_w),
             change.map_or_else(|| "–".to_owned(), |(own, base)| signed(own - base, 0)),
             relative.map_or_else(|| "–".to_owned(), |percent| format!("{} %", signed(percent, 1))),
+            row.limited.to_string(),
             row.unsolved.to_string(),
         ]
     };
-    let columns = ["W", "W of the bus", "difference W", "change", "hours unsolved"];
+    let columns = ["W", "W of the bus", "difference W", "change", "hours limited", "hours unsolved"];
     let table = Table::new("variant_annual.csv", &["variant", "design"], &columns, rows.iter().map(cells).collect());
     let section = Section { tables: data(study), ..Section::new("Buses that differ") }
         .asking("What would the year take with a bus that is built otherwise, or meets something else?")
@@ -42,7 +43,8 @@ pub(super) fn section(study: &StudyReport) -> Option<Section> {
         .with(Block::Table(table));
     Some(section.with(Block::limits(
         "The same hours are solved for every variant, so that their weather does not blur the difference; passengers, timetable and\n\
-         controls do not answer to it. Heat capacities are not asked: this is the steady state.",
+         controls do not answer to it. Hours are limited in which the equipment cannot reach the window; what they take is part of\n\
+         the mean. Heat capacities are not asked: this is the steady state.",
     )))
 }
 
@@ -69,6 +71,8 @@ fn data(study: &StudyReport) -> Vec<DataTable> {
             ("cooling_power_w", &|r: &VariantYear| optional(r.cooling_power_w)),
             ("base_hvac_power_w", &|r: &VariantYear| optional(r.base_hvac_power_w)),
             ("unsolved_count", &|r: &VariantYear| r.unsolved.to_string()),
+            ("limited_count", &|r: &VariantYear| r.limited.to_string()),
+            ("base_limited_count", &|r: &VariantYear| r.base_limited.to_string()),
         ],
     );
     let settings = DataTable::of(
