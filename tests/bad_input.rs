@@ -1,8 +1,6 @@
 //! Bad input: an error or a recorded refusal that names file, line and remedy.
 
-mod common;
-
-use common::Scratch;
+use crate::common::Scratch;
 use std::io::Write;
 
 /// Three missions; the first one is broken by `change`, the others must come through with exit status 1.

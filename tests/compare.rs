@@ -2,9 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a test ends where something is not as expected")]
 
-mod common;
-
-use common::Scratch;
+use crate::common::Scratch;
 
 fn change_w(text: &str, design: &str) -> f64 {
     let line = text.lines().find(|l| l.starts_with(&format!("{design} "))).unwrap();

@@ -1,8 +1,6 @@
 //! Setpoints for a controller on board, from the program outside.
 
-mod common;
-
-use common::Scratch;
+use crate::common::Scratch;
 
 /// A study of some missions of the year, solved.
 fn solved() -> Scratch {

@@ -2,9 +2,7 @@
 //!
 //! `BUSCLIMATE_FLIPS` says how many bits are changed, one at a time.
 
-mod common;
-
-use common::{CONTENT, Scratch};
+use crate::common::{CONTENT, Scratch};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 

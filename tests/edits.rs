@@ -5,10 +5,8 @@
 
 #![expect(clippy::unwrap_used, reason = "a test ends where something is not as expected")]
 
-mod common;
-
-use common::world::{WEATHER, World};
-use common::{CONTENT, Scratch};
+use crate::common::world::{WEATHER, World};
+use crate::common::{CONTENT, Scratch};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use std::time::Duration;

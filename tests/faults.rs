@@ -6,10 +6,8 @@
 
 #![expect(clippy::unwrap_used, reason = "a test ends where something is not as expected")]
 
-mod common;
-
-use common::world::World;
-use common::{CONTENT, Scratch};
+use crate::common::world::World;
+use crate::common::{CONTENT, Scratch};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use std::cell::Cell;

@@ -2,9 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a test ends where something is not as expected")]
 
-mod common;
-
-use common::{CONTENT, Scratch};
+use crate::common::{CONTENT, Scratch};
 use std::io::Write;
 
 const SAMPLES: &str = "SELECT sample_id, passengers, door_open_fraction, ambient_temperature_c FROM sample";

@@ -4,9 +4,7 @@
 #![cfg(unix)]
 #![expect(clippy::unwrap_used, reason = "a test ends where something is not as expected")]
 
-mod common;
-
-use common::Scratch;
+use crate::common::Scratch;
 use std::io::Write;
 use std::process::Command;
 

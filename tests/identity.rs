@@ -1,8 +1,6 @@
 //! What a thing is, is its content: where it lies, what it is called and what stands beside it make nothing stale.
 
-mod common;
-
-use common::{Run, Scratch};
+use crate::common::{Run, Scratch};
 
 const OPTIMA: &str = "SELECT * FROM optimum ORDER BY sample_id, design, pmv_limit";
 const SIMULATIONS: &str = "SELECT * FROM simulation ORDER BY mission, design, pmv_limit, controller";

@@ -1,8 +1,6 @@
 //! The pipeline called from a program that is not ours: no console, no exit status.
 
-mod common;
-
-use common::Scratch;
+use crate::common::Scratch;
 use pipeline::{Inputs, MissionReader, MissionSamples, Options, PipelineError, Progress, Quiet, Stage};
 use store::Store;
 use study::Study;

@@ -2,14 +2,12 @@
 
 #![expect(clippy::unwrap_used, reason = "a test ends where something is not as expected")]
 
-mod common;
-
+use crate::common::Scratch;
 use cabin::{
     Cabin, ComfortWindow, Disturbances, Heating, PassengerViews, Vehicle, kelvin, passenger_positions_m,
     place_passengers,
 };
 use chrono::{DateTime, TimeDelta, Utc};
-use common::Scratch;
 use ingest::Content;
 use ingest::mission::{MissionOptions, MissionSource, RouteChoice, read, span_of_name};
 use serde_json::{Value, json};

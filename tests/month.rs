@@ -3,10 +3,8 @@
 //!
 //! `BUSCLIMATE_NIGHTS` says how many nights there are.
 
-mod common;
-
-use common::world::{WEATHER, World};
-use common::{CONTENT, Scratch};
+use crate::common::world::{WEATHER, World};
+use crate::common::{CONTENT, Scratch};
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 

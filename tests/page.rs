@@ -5,9 +5,7 @@
 #![expect(clippy::unwrap_used, reason = "a test ends where something is not as expected")]
 #![expect(clippy::print_stdout, reason = "a test says why it was skipped")]
 
-mod common;
-
-use common::Scratch;
+use crate::common::Scratch;
 use roxmltree::{Document, Node, ParsingOptions};
 use serde_json::Value;
 use std::path::{Path, PathBuf};

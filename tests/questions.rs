@@ -2,9 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a test ends where something is not as expected")]
 
-mod common;
-
-use common::Scratch;
+use crate::common::Scratch;
 use std::path::Path;
 use testing::peer;
 

@@ -1,8 +1,6 @@
 //! The real mission with real weather, against an independent computation.
 
-mod common;
-
-use common::{Scratch, data};
+use crate::common::{Scratch, data};
 use std::process::Command;
 
 const MISSION: &str = "ztbus/B183_2021-07-26_03-53-27_2021-07-26_07-18-47.csv";

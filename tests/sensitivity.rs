@@ -1,8 +1,6 @@
 //! Buses that differ, what the year depends on, what it costs, and the same bus in other places: from the outside.
 
-mod common;
-
-use common::Scratch;
+use crate::common::Scratch;
 
 fn number(text: &str) -> f64 {
     text.parse().unwrap_or_else(|_| panic!("{text:?} is no number"))

@@ -2,9 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a test ends where something is not as expected")]
 
-mod common;
-
-use common::{CONTENT, Scratch};
+use crate::common::{CONTENT, Scratch};
 use std::path::PathBuf;
 use std::time::Duration;
 

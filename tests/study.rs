@@ -2,9 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a test ends where something is not as expected")]
 
-mod common;
-
-use common::Scratch;
+use crate::common::Scratch;
 
 const SAMPLES: &str = "SELECT sample_id, mission, segment, start_utc, month, weight, ambient_temperature_c, dni_w_m2,
     dhi_w_m2, passengers, door_open_fraction, solar_altitude_deg, shadow_fraction FROM sample ORDER BY sample_id";

@@ -1,8 +1,6 @@
 //! The same numbers in every tool: DuckDB, pandas, polars and Datasette beside SQLite.
 
-mod common;
-
-use common::Scratch;
+use crate::common::Scratch;
 use testing::peer;
 
 #[test]

@@ -1,8 +1,6 @@
 //! Verification from outside: a sound database passes, and a row that somebody has changed is found.
 
-mod common;
-
-use common::Scratch;
+use crate::common::Scratch;
 
 fn solved() -> Scratch {
     let scratch = Scratch::demo(4);

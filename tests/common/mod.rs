@@ -1,7 +1,6 @@
 //! Studies in scratch folders, and the program run on them.
 
 #![expect(clippy::unwrap_used, reason = "a test ends where something is not as expected")]
-#![allow(dead_code, reason = "every test file uses its own part of these")]
 
 pub mod world;
 
