@@ -128,8 +128,8 @@ impl Design {
         if mode == OperatingMode::Heating { self.backup_heater_w } else { 0.0 }
     }
 
-    /// All that unit and back-up heater can give at most, in W of heat, at an ambient temperature in K and the mode's lift in K; infinite
-    /// without a limit. The heat of cooling is what is taken away.
+    /// All that unit and back-up heater can give at most, in W of heat, at an ambient temperature in K and the mode's lift in
+    /// K; infinite without a limit. The heat of cooling is what is taken away.
     #[must_use]
     pub fn capacity_w(&self, mode: OperatingMode, ambient_k: f64, lift_k: f64) -> f64 {
         let Some((cop, Some(limit))) = self.unit(mode, lift_k) else { return f64::INFINITY };

@@ -24,8 +24,8 @@ impl OperatingMode {
         }
     }
 
-    /// The temperature lift of the air unit in K, with ambient air and cabin in K: how much warmer the cabin is than the ambient air,
-    /// in cooling how much colder.
+    /// The temperature lift of the air unit in K, with ambient air and cabin in K: how much warmer the cabin is than the
+    /// ambient air, in cooling how much colder.
     #[must_use]
     #[inline]
     pub fn lift_k(self, ambient_k: f64, cabin_k: f64) -> f64 {
@@ -76,6 +76,12 @@ impl Operation {
         self.devices.heaters()
     }
 
+    /// Whether it misses the window, because nothing on board can bring or take away the heat.
+    #[must_use]
+    pub fn is_limited(&self) -> bool {
+        self.unmet_heat_w > 0.0
+    }
+
     /// Total power in W (paper, eq. phvactot).
     #[must_use]
     pub fn hvac_power_w(&self) -> f64 {
@@ -119,7 +125,7 @@ impl Outcome {
     #[must_use]
     pub fn words(&self) -> &'static str {
         match self {
-            Self::Solved(operation, _) if operation.unmet_heat_w > 0.0 => "limited",
+            Self::Solved(operation, _) if operation.is_limited() => "limited",
             Self::Solved(..) => "solved",
             Self::Infeasible(Infeasible::TooWarm) => "infeasible: too warm",
             Self::Infeasible(Infeasible::TooCold) => "infeasible: too cold",

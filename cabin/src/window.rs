@@ -62,14 +62,14 @@ impl ComfortWindow {
 
     /// Whether it is `[-limit, limit]`.
     #[must_use]
-    pub fn is_within(&self, limit: f64) -> bool {
+    pub fn is_plus_minus(&self, limit: f64) -> bool {
         self.is_symmetric() && self.pmv_max == limit
     }
 
     /// The window that stands for several where only one is shown: ±1, or else the middle one; `None` of none.
     #[must_use]
     pub fn shown(windows: &[Self]) -> Option<Self> {
-        windows.iter().find(|w| w.is_within(Self::SHOWN_LIMIT)).or_else(|| windows.get(windows.len() / 2)).copied()
+        windows.iter().find(|w| w.is_plus_minus(Self::SHOWN_LIMIT)).or_else(|| windows.get(windows.len() / 2)).copied()
     }
 
     /// The larger distance of a limit from neutral; for `[-L, L]` it is `L`.

@@ -22,7 +22,7 @@ pub(crate) fn answer(study: &StudyReport) -> Option<String> {
         }
         None => text.push('.'),
     }
-    let stricter = study.windows().into_iter().find(|w| w.is_within(shown.pmv_limit() / 2.0));
+    let stricter = study.windows().into_iter().find(|w| w.is_plus_minus(shown.pmv_limit() / 2.0));
     if let Some((stricter, (more, ends))) = stricter
         .filter(|_| shown.is_symmetric() && shown.pmv_limit() > 0.0)
         .and_then(|w| Some((w, study.change(design, w, shown)?)))

@@ -185,7 +185,7 @@ impl StudyReport {
     /// Power of a design in one window over that in another, less 1, with its interval where the other one is ±1.
     pub(crate) fn change(&self, design: &str, window: ComfortWindow, from: ComfortWindow) -> Option<(f64, Ends)> {
         let from_w = self.annual_power_w(design, from).filter(|w| *w > 0.0)?;
-        let is_1 = from.is_within(1.0);
+        let is_1 = from.is_plus_minus(1.0);
         let ends = self.interval(design, window).filter(|_| is_1).and_then(|r| r.change_vs_pmv_1);
         Some((self.annual_power_w(design, window)? / from_w - 1.0, ends))
     }

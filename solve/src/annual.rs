@@ -91,7 +91,7 @@ fn month(vehicle: &Vehicle, views: &PassengerViews, grid: &Grid, samples: &[Dist
             sum.add(optimum.outcome.operation().map(|o| Used {
                 mode: o.mode,
                 hvac_power_w: o.hvac_power_w(),
-                is_limited: o.unmet_heat_w > 0.0,
+                is_limited: o.is_limited(),
             }));
         }
     }

@@ -77,7 +77,7 @@ pub(crate) fn energy(
     let classes = year::classes(&year, &months, windows);
     let bins = bins::bins(&all, &months);
     let ptc = study.design_rows.iter().position(|row| row.name == "ptc");
-    let pmv_1 = grid.windows.iter().position(|w| w.is_within(1.0));
+    let pmv_1 = grid.windows.iter().position(|w| w.is_plus_minus(1.0));
     let uncertainty = uncertainty(days, &store.month_days(grid)?, &year, [points, windows], ptc, pmv_1);
     Ok(Energy { sums, flows, classes, bins, uncertainty })
 }

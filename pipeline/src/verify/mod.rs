@@ -255,7 +255,7 @@ impl Context<'_> {
         table.check(Kind::Balances, residual_w <= allowed_w, residual_w, || at(&format!("{residual_w} W left over")));
 
         let excess = (o.pmv - comfort.pmv_max()).max(comfort.pmv_min() - o.pmv).max(0.0);
-        if o.unmet_heat_w > 0.0 {
+        if o.is_limited() {
             // Outside its window only where all that the design has is given.
             let lift_k = o.mode.lift_k(cabin.ambient_k(), t.cabin_k);
             let most_w = design.capacity_w(o.mode, cabin.ambient_k(), lift_k);

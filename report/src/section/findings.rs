@@ -139,7 +139,7 @@ fn share(
     count: impl Fn(&store::LimitShare) -> u64,
     range_percent: std::ops::RangeInclusive<f64>,
 ) -> PaperFinding {
-    let at_one = || study.limit_shares.iter().filter(|s| s.window.is_within(1.0));
+    let at_one = || study.limit_shares.iter().filter(|s| s.window.is_plus_minus(1.0));
     let found = at_one().find(|s| s.design == "hp+curtain").or_else(|| at_one().next());
     let Some(row) = found.filter(|s| s.solved_count > 0) else { return not_covered(claim, paper) };
     let percent = 100.0 * count(row) as f64 / row.solved_count as f64;

@@ -117,7 +117,7 @@ fn by_kilometre_and_year(study: &StudyReport, shown: ComfortWindow, (cheapest, p
 /// Half as far from neutral as what is shown, and twice as far.
 fn comfort_costs(study: &StudyReport, shown: ComfortWindow, cheapest: &str) -> Option<Block> {
     let of = |limit: f64| {
-        let window = study.windows().into_iter().find(|w| w.is_within(limit))?;
+        let window = study.windows().into_iter().find(|w| w.is_plus_minus(limit))?;
         let other_w = study.annual_power_w(cheapest, window).filter(|w| *w > 0.0)?;
         let energy = kwh(study, cheapest, window, other_w, 1.0);
         let (change, ends) = study.change(cheapest, window, shown)?;

@@ -201,14 +201,14 @@ fn flows_kw(f: &HeatFlows) -> [f64; 13] {
 }
 
 fn both_missions(study: &StudyReport, (limit, printed): (f64, [f64; 2])) -> Option<PaperNumber> {
-    let rows = study.trace_windows.iter().filter(|w| w.window.is_within(limit));
+    let rows = study.trace_windows.iter().filter(|w| w.window.is_plus_minus(limit));
     let powers_w = rows.flat_map(|w| [w.static_mean_hvac_power_w, w.mean_hvac_power_w]);
     boxed("dynamic-comparison-pareto", "both missions", limit, printed, powers_w)
 }
 
 fn causal(study: &StudyReport, (limit, printed): (f64, [f64; 2])) -> Option<PaperNumber> {
     let extracted = study.control_trace_points.iter().map(|(point, ..)| point).filter(|p| p.controller == "extracted");
-    let rows = extracted.filter(|p| p.window.is_within(limit));
+    let rows = extracted.filter(|p| p.window.is_plus_minus(limit));
     let powers_w = rows.flat_map(|p| [p.static_mean_hvac_power_w, p.mean_hvac_power_w]);
     boxed("causal-pareto-front", "the summer mission", limit, printed, powers_w)
 }
