@@ -37,6 +37,8 @@ pub struct Cabin<'a> {
     r_heater_shell: f64,
     r_interior_shell: f64,
     r_outside: f64,
+    /// What the outside of the shell gets from sun and surroundings in W, less what it gives at 0 K.
+    outside_w: f64,
     passenger_heat_w: f64,
     /// Door loss in W/K^1.5 without curtain, with all doors open and as they are.
     door_all_open: f64,
@@ -84,6 +86,9 @@ impl<'a> Cabin<'a> {
             r_heater_shell: transfer.radiation_heater_shell_w_k4,
             r_interior_shell: transfer.radiation_interior_shell_w_k4,
             r_outside: transfer.radiation_shell_outside_w_k4,
+            outside_w: solar.shell_outside_w
+                + transfer.convection_shell_outside_w_k * ambient_k
+                + transfer.radiation_shell_outside_w_k4 * pow4(ambient_k),
             passenger_heat_w: v.passenger_heat_w,
             door_all_open,
             door: door_all_open * disturbances.door_open_fraction,
@@ -202,30 +207,76 @@ impl<'a> Cabin<'a> {
         door_loss_share * self.door * (cabin_k - self.ambient_k).abs().sqrt()
     }
 
-    /// The surface balances, linearised at the given temperatures.
-    pub(crate) fn linearise(&self, t: &Temperatures, heaters: Heaters) -> Linear {
-        let system = System::new(self, t, heaters);
-        // Without the heaters' power; the cabin's own balance is the air unit's matter.
-        let [heater_w, interior_w, _, inside_w, outside_w] = self.flows(t, false, 0.0, 0.0).net_w();
-        Linear {
-            shift_k: system.solve([heater_w, interior_w, inside_w, outside_w]),
-            slopes: system.solve([self.g_heater, self.g_interior, self.g_shell, 0.0]),
-        }
-    }
-}
+    /// The surfaces where their balances hold to first order about the given temperatures, with the cabin as warm as it is; and
+    /// how they follow it. `cubes` are the third powers of heaters, interior, inside and outside of the shell.
+    ///
+    /// A flow r (a⁴ − b⁴) is to first order 4 r (a³ a' − b³ b') less three times itself, which gives the new temperatures
+    /// themselves, not their changes: convection is linear in them and need not be known.
+    #[inline]
+    pub(crate) fn balanced(
+        &self,
+        t: &Temperatures,
+        [heater3, interior3, inside3, outside3]: [f64; 4],
+        heaters: Heaters,
+    ) -> (Temperatures, Slopes) {
+        let (r_hi, r_hs, r_is) = (4.0 * self.r_heater_interior, 4.0 * self.r_heater_shell, 4.0 * self.r_interior_shell);
+        // Slopes of the radiation in W/K over its source and its target, and three times the flow.
+        let (hi_source, hi_target) = (r_hi * heater3, r_hi * interior3);
+        let (hs_source, hs_target) = (r_hs * heater3, r_hs * inside3);
+        let (is_source, is_target) = (r_is * interior3, r_is * inside3);
+        let outward = 4.0 * self.r_outside * outside3;
+        let hi_w = 0.75 * (hi_source * t.radiant_heater_k - hi_target * t.interior_k);
+        let hs_w = 0.75 * (hs_source * t.radiant_heater_k - hs_target * t.shell_inside_k);
+        let is_w = 0.75 * (is_source * t.interior_k - is_target * t.shell_inside_k);
 
-/// What the four surfaces do where the balances hold: `shift_k` at the cabin temperature as it is, and `slopes` more for
-/// each kelvin of the cabin; heaters, interior, inside and outside of the shell.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Linear {
-    pub shift_k: [f64; 4],
-    pub slopes: [f64; 4],
-}
+        // The heaters follow interior and inside of the shell, or are held at their target.
+        let (heater_k, heater_inverse) = match heaters {
+            Heaters::On => (t.radiant_heater_k, 0.0),
+            Heaters::Off => {
+                let inverse = 1.0 / (self.g_heater + hi_source + hs_source);
+                ((self.g_heater * t.cabin_k + hi_w + hs_w) * inverse, inverse)
+            }
+        };
+        let [per_interior, per_inside, per_cabin] =
+            [hi_target, hs_target, self.g_heater].map(|w_k| w_k * heater_inverse);
+        // The outside of the shell follows its inside.
+        let outside_inverse = 1.0 / (self.g_conduction + self.g_outside + outward);
+        let outside_k = (self.outside_w + 0.75 * outward * t.shell_outside_k) * outside_inverse;
+        let outside_per_inside = self.g_conduction * outside_inverse;
 
-impl Linear {
-    pub fn named_slopes(&self) -> Slopes {
-        let [radiant_heater, interior, shell_inside, shell_outside] = self.slopes;
-        Slopes { interior, shell_inside, shell_outside, radiant_heater }
+        // What is left for interior and inside of the shell: a two-by-two system.
+        let interior_own = self.g_interior + hi_target + is_source - hi_source * per_interior;
+        let interior_other = is_target + hi_source * per_inside;
+        let inside_own = self.g_shell + hs_target + is_target + self.g_conduction
+            - hs_source * per_inside
+            - self.g_conduction * outside_per_inside;
+        let inside_other = is_source + hs_source * per_interior;
+        let inverse = 1.0 / (interior_own * inside_own - interior_other * inside_other);
+        let solve = |interior: f64, inside: f64| {
+            let interior_times = inside_own * interior + interior_other * inside;
+            (interior_times * inverse, (interior_own * inside + inside_other * interior) * inverse)
+        };
+        let (interior_k, shell_inside_k) = solve(
+            self.solar.interior_w + self.g_interior * t.cabin_k + hi_source * heater_k + is_w - hi_w,
+            self.solar.shell_inside_w + self.g_shell * t.cabin_k + hs_source * heater_k - hs_w - is_w
+                + self.g_conduction * outside_k,
+        );
+        let (interior, shell_inside) =
+            solve(self.g_interior + hi_source * per_cabin, self.g_shell + hs_source * per_cabin);
+        let temperatures = Temperatures {
+            cabin_k: t.cabin_k,
+            interior_k,
+            shell_inside_k,
+            shell_outside_k: outside_k + outside_per_inside * shell_inside_k,
+            radiant_heater_k: heater_k + per_interior * interior_k + per_inside * shell_inside_k,
+        };
+        let slopes = Slopes {
+            interior,
+            shell_inside,
+            shell_outside: outside_per_inside * shell_inside,
+            radiant_heater: per_cabin + per_interior * interior + per_inside * shell_inside,
+        };
+        (temperatures, slopes)
     }
 }
 
@@ -234,69 +285,4 @@ impl Linear {
 pub(crate) fn pow4<R: Real>(k: R) -> R {
     let square = k * k;
     square * square
-}
-
-/// The balances of the four surfaces, linearised: what change of the temperatures takes up given net heats?
-struct System {
-    /// Radiation slopes in W/K: how much more a flow becomes when its source, or less when its target, warms by 1 K.
-    interior_from_heater: f64,
-    interior_to_heater: f64,
-    shell_from_heater: f64,
-    shell_to_heater: f64,
-    /// 1/total slope of the heaters; 0 while they are held at their target.
-    heater_inverse: f64,
-    g_conduction: f64,
-    outside_inverse: f64,
-    matrix: [f64; 4],
-    determinant_inverse: f64,
-}
-
-impl System {
-    fn new(cabin: &Cabin<'_>, t: &Temperatures, heaters: Heaters) -> Self {
-        let slope = |r: f64, k: f64| 4.0 * r * k * k * k;
-        let interior_from_heater = slope(cabin.r_heater_interior, t.radiant_heater_k);
-        let interior_to_heater = slope(cabin.r_heater_interior, t.interior_k);
-        let shell_from_heater = slope(cabin.r_heater_shell, t.radiant_heater_k);
-        let shell_to_heater = slope(cabin.r_heater_shell, t.shell_inside_k);
-        let shell_from_interior = slope(cabin.r_interior_shell, t.interior_k);
-        let interior_from_shell = slope(cabin.r_interior_shell, t.shell_inside_k);
-        let heater_inverse = match heaters {
-            Heaters::On => 0.0,
-            Heaters::Off => 1.0 / (cabin.g_heater + interior_from_heater + shell_from_heater),
-        };
-        let outside = cabin.g_conduction + cabin.g_outside + slope(cabin.r_outside, t.shell_outside_k);
-        let outside_inverse = 1.0 / outside;
-        let m11 = cabin.g_interior + interior_to_heater + shell_from_interior
-            - interior_from_heater * interior_to_heater * heater_inverse;
-        let m12 = -(interior_from_shell + interior_from_heater * shell_to_heater * heater_inverse);
-        let m21 = -(shell_from_interior + shell_from_heater * interior_to_heater * heater_inverse);
-        let m22 = cabin.g_shell + shell_to_heater + interior_from_shell + cabin.g_conduction
-            - shell_from_heater * shell_to_heater * heater_inverse
-            - cabin.g_conduction * cabin.g_conduction * outside_inverse;
-        Self {
-            interior_from_heater,
-            interior_to_heater,
-            shell_from_heater,
-            shell_to_heater,
-            heater_inverse,
-            g_conduction: cabin.g_conduction,
-            outside_inverse,
-            matrix: [m11, m12, m21, m22],
-            determinant_inverse: 1.0 / (m11 * m22 - m12 * m21),
-        }
-    }
-
-    /// Changes of heaters, interior, inside and outside of the shell in K that take up the given heats in W.
-    fn solve(&self, [heater, interior, inside, outside]: [f64; 4]) -> [f64; 4] {
-        let [m11, m12, m21, m22] = self.matrix;
-        let heater_step = heater * self.heater_inverse;
-        let q1 = interior + self.interior_from_heater * heater_step;
-        let q2 = inside + self.shell_from_heater * heater_step + self.g_conduction * outside * self.outside_inverse;
-        let d_interior = (m22 * q1 - m12 * q2) * self.determinant_inverse;
-        let d_inside = (m11 * q2 - m21 * q1) * self.determinant_inverse;
-        let d_outside = (outside + self.g_conduction * d_inside) * self.outside_inverse;
-        let d_heater =
-            (heater + self.interior_to_heater * d_interior + self.shell_to_heater * d_inside) * self.heater_inverse;
-        [d_heater, d_interior, d_inside, d_outside]
-    }
 }

@@ -1,33 +1,11 @@
 //! The mean vote of the passengers, and its slope over the cabin temperature.
 
-use crate::balance::{Linear, pow4};
-use crate::{Cabin, Real, StandardRange, Temperatures, ZERO_CELSIUS_K};
+use crate::balance::pow4;
+use crate::pmv::Line;
+use crate::{Cabin, Real, Slopes, StandardRange, Temperatures, ZERO_CELSIUS_K};
 
-/// A passenger who stands for a share of all of them.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Passenger {
-    /// View factor to the radiant heaters.
-    view: f64,
-    weight: f64,
-    /// Surface temperature of the clothing in the standard's kelvin (0 °C = 273 K).
-    pub surface_k: f64,
-    /// Where its heat balance holds: so far away, and so much farther for each kelvin of the cabin.
-    shift_k: f64,
-    pub slope: f64,
-}
-
-impl Passenger {
-    pub fn new(view: f64, weight: f64, surface_k: f64) -> Self {
-        Self { view, weight, surface_k, shift_k: 0.0, slope: 0.0 }
-    }
-
-    /// Moves the clothing along its line; returns the length of the move in K.
-    pub fn step(&mut self, cabin_step_k: f64) -> f64 {
-        let step_k = self.shift_k + self.slope * cabin_step_k;
-        self.surface_k += step_k;
-        step_k.abs()
-    }
-}
+/// The passengers of a quadrature: view factor to the radiant heaters and weight of each.
+pub(crate) type Nodes<const N: usize> = [(f64, f64); N];
 
 /// Surface temperatures of the clothing of the two passengers of the quadrature, in the standard's kelvin, stepped through
 /// time; in one bus, or in several abreast.
@@ -61,47 +39,59 @@ impl Cabin<'_> {
         self.pmv.vote(dry_w_m2, R::splat(0.0), t.cabin_k - ZERO_CELSIUS_K).0
     }
 
-    /// Mean vote of the passengers where balances and clothing hold to first order, and its slope in 1/K over the cabin
-    /// temperature. Leaves in each passenger how its clothing follows.
-    pub(crate) fn vote_line(&self, t: &Temperatures, linear: &Linear, passengers: &mut [Passenger]) -> (f64, f64) {
-        let cube = |k: f64| k * k * k;
-        let [heater3, interior3, shell3] = [t.radiant_heater_k, t.interior_k, t.shell_inside_k].map(cube);
-        let rise = |steps: &[f64; 4], view: f64, view_shell: f64| {
-            view * heater3 * steps[0] + self.view_interior * interior3 * steps[1] + view_shell * shell3 * steps[2]
+    /// Mean vote of the passengers where balances and clothing hold to first order about the given temperatures, and their
+    /// clothing there in the standard's kelvin. `cubes` as in [`Cabin::balanced`], whose result is `balanced` and `slopes`.
+    #[inline]
+    pub(crate) fn vote_line<const N: usize>(
+        &self,
+        t: &Temperatures,
+        [heater3, interior3, inside3, _]: [f64; 4],
+        (balanced, slopes): (&Temperatures, &Slopes),
+        nodes: &Nodes<N>,
+        clothes: &[Line; N],
+    ) -> (Line, [Line; N]) {
+        let view_rest = 1.0 - self.view_interior;
+        let (interior3, inside3) = (self.view_interior * interior3, inside3);
+        // T_mr⁴ = F_rh T_rh⁴ + (1 − F_int − F_rh) T_s,i⁴ + F_int T_int⁴ (paper, section 2.2): what is seen by all, and what more
+        // for each unit of F_rh; now, where the balances hold, and for each kelvin of the cabin.
+        let seen = |heater: f64, interior: f64, inside: f64| {
+            let inside = inside3 * inside;
+            (interior3 * interior + view_rest * inside, heater3 * heater - inside)
         };
+        let now = seen(t.radiant_heater_k, t.interior_k, t.shell_inside_k);
+        let then = seen(balanced.radiant_heater_k, balanced.interior_k, balanced.shell_inside_k);
+        let slope = seen(slopes.radiant_heater, slopes.interior, slopes.shell_inside);
         let air_k = t.cabin_k - STANDARD_SHIFT_K;
         let (mut dry_w_m2, mut dry_slope) = (0.0, 0.0);
-        for p in passengers {
-            let view_shell = 1.0 - self.view_interior - p.view;
-            // T_mr⁴ = F_rh T_rh⁴ + (1 − F_int − F_rh) T_s,i⁴ + F_int T_int⁴ (paper, section 2.2), and its slope.
-            let fourth = p.view * heater3 * t.radiant_heater_k
-                + self.view_interior * interior3 * t.interior_k
-                + view_shell * shell3 * t.shell_inside_k;
+        let mut lines = *clothes;
+        for ((view, weight), clothing) in nodes.iter().zip(&mut lines) {
+            let fourth = now.0 + view * now.1;
             let radiant_k = fourth.sqrt().sqrt();
+            // To first order the new T_mr is T_mr⁻³ times the cubes with the new temperatures.
             let per_cube = radiant_k / fourth;
-            let shift_k = rise(&linear.shift_k, p.view, view_shell) * per_cube;
-            let slope = rise(&linear.slopes, p.view, view_shell) * per_cube;
-
-            let clothing = self.pmv.clothing(p.surface_k, air_k, radiant_k - STANDARD_SHIFT_K);
-            p.shift_k = clothing.surface.value + clothing.surface.per_radiant_k * shift_k;
-            p.slope = clothing.surface.per_air_k + clothing.surface.per_radiant_k * slope;
-            dry_w_m2 += p.weight * (clothing.dry_w_m2.value + clothing.dry_w_m2.per_radiant_k * shift_k);
-            dry_slope += p.weight * (clothing.dry_w_m2.per_air_k + clothing.dry_w_m2.per_radiant_k * slope);
+            let radiant = Line {
+                value: (then.0 + view * then.1) * per_cube - STANDARD_SHIFT_K,
+                per_air_k: (slope.0 + view * slope.1) * per_cube,
+            };
+            let (surface, dry) = self.pmv.clothing(clothing.value, air_k, radiant_k - STANDARD_SHIFT_K, radiant);
+            *clothing = surface;
+            dry_w_m2 += weight * dry.value;
+            dry_slope += weight * dry.per_air_k;
         }
-        self.pmv.vote(dry_w_m2, dry_slope, t.cabin_k - ZERO_CELSIUS_K)
+        let (value, per_air_k) = self.pmv.vote(dry_w_m2, dry_slope, t.cabin_k - ZERO_CELSIUS_K);
+        (Line { value, per_air_k }, lines)
     }
 
     /// The view factor that parts passengers with natural from those with forced convection at their clothing: there the
-    /// vote has a kink, over which no quadrature is good. `None` where it lies between no two passengers. `gauss` are the
-    /// two passengers of the whole, settled.
-    pub(crate) fn kink_view(&self, t: &Temperatures, [a, b]: &[Passenger; 2]) -> Option<f64> {
+    /// vote has a kink, over which no quadrature is good. `None` where it lies between no two passengers. `clothes` are
+    /// those of the two passengers of the whole, settled.
+    pub(crate) fn kink_view(&self, t: &Temperatures, clothes: &[Line; 2]) -> Option<f64> {
         let air_k = t.cabin_k - STANDARD_SHIFT_K;
         let kink_k = self.pmv.natural_convection_from_k();
         let [least, largest] = self.views.range();
         // What the surface varies over all passengers, half as much again, tells most states from those near a kink.
-        let per_view_k = (b.surface_k - a.surface_k) / (b.view - a.view);
-        let varies_k = 1.5 * (per_view_k * (largest - least)).abs();
-        let excess_k = a.surface_k - air_k;
+        let varies_k = 1.5 * (self.clothing_per_view_k(clothes) * (largest - least)).abs();
+        let excess_k = clothes[0].value - air_k;
         // False as well where all passengers see the same and there is no number.
         let near = (excess_k.abs() - kink_k).abs() < varies_k;
         if !near {
@@ -114,12 +104,20 @@ impl Cabin<'_> {
         (least..largest).contains(&view).then_some(view)
     }
 
-    /// The passengers as two groups with a quadrature each, parted at a view factor, with clothing as warm as the straight
-    /// line through two of them says.
-    pub(crate) fn split(&self, view: f64, [a, b]: &[Passenger; 2]) -> [Passenger; 4] {
-        let per_view_k = (b.surface_k - a.surface_k) / (b.view - a.view);
-        let passenger = |(view, weight)| Passenger::new(view, weight, a.surface_k + per_view_k * (view - a.view));
-        self.views.split_nodes(view).map(passenger)
+    /// The passengers as two groups with a quadrature each, parted at a view factor, and their clothing, as warm as the straight
+    /// line through that of the two of the whole says.
+    pub(crate) fn split(&self, view: f64, clothes: &[Line; 2]) -> (Nodes<4>, [Line; 4]) {
+        let nodes = self.views.split_nodes(view);
+        let (from, _) = self.views.nodes()[0];
+        let per_view_k = self.clothing_per_view_k(clothes);
+        let clothing = |(view, _)| Line { value: clothes[0].value + per_view_k * (view - from), per_air_k: 0.0 };
+        (nodes, nodes.map(clothing))
+    }
+
+    /// How much warmer clothing is for each unit of view factor; no number where all see the same.
+    fn clothing_per_view_k(&self, [a, b]: &[Line; 2]) -> f64 {
+        let [(view_a, _), (view_b, _)] = self.views.nodes();
+        (b.value - a.value) / (view_b - view_a)
     }
 
     /// The vote of one passenger with the given view factor to the radiant heaters.

@@ -36,29 +36,17 @@ pub struct PmvPoint {
     pub surface_excess_k: f64,
 }
 
-/// A quantity to first order in air and mean radiant temperature.
-#[derive(Debug, Clone, Copy)]
+/// A quantity to first order: with the air as warm as it is, and its slope over the air temperature.
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Line {
     pub value: f64,
     pub per_air_k: f64,
-    pub per_radiant_k: f64,
 }
 
-/// The heat balance of the clothing, linearised and solved for its surface temperature.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Clothing {
-    /// By how many K the surface has to change.
-    pub surface: Line,
-    /// Radiation and convection from the surface in W/m² after that change.
-    pub dry_w_m2: Line,
-}
-
-/// Radiation and convection from the clothing's surface in W/m², and its slopes in W/(m²K).
+/// Radiation and convection from the clothing's surface in W/m², and its slope in W/(m²K) over the surface's temperature.
 struct DryLoss<R> {
     w_m2: R,
     per_surface: R,
-    per_air: R,
-    per_radiant: R,
 }
 
 /// Whether a state lies where ISO 7730 (clause 4.1) says that the index should be used.
@@ -164,40 +152,40 @@ impl PmvModel {
         }
     }
 
-    /// The clothing's heat balance at a surface, air and mean radiant temperature in the annex's kelvin, to first order.
+    /// The clothing's surface temperature and its dry loss in W/m² where its heat balance holds to first order about a surface
+    /// and a mean radiant temperature, all in the annex's kelvin; `radiant` is how the latter follows the air.
     ///
     /// With the dry loss L(t) = f_cl (3.96e-8 (t⁴ − t_r⁴) + h_c(t) (t − t_a)) the balance is t + I_cl L = 35.7 °C − 0.028 M.
-    #[inline]
-    pub(crate) fn clothing(&self, surface_k: f64, air_k: f64, radiant_k: f64) -> Clothing {
-        let (loss, inverse, shift) = self.surface_step(surface_k, air_k, radiant_k);
-        Clothing {
-            surface: Line {
-                value: shift,
-                per_air_k: -self.insulation * loss.per_air * inverse,
-                per_radiant_k: -self.insulation * loss.per_radiant * inverse,
-            },
-            dry_w_m2: Line {
-                value: loss.w_m2 + loss.per_surface * shift,
-                per_air_k: loss.per_air * inverse,
-                per_radiant_k: loss.per_radiant * inverse,
-            },
-        }
+    #[inline(always)]
+    pub(crate) fn clothing(&self, surface_k: f64, air_k: f64, radiant_k: f64, radiant: Line) -> (Line, Line) {
+        let t = surface_k;
+        let (t3, radiant3) = (t * t * t, radiant_k * radiant_k * radiant_k);
+        let difference = t - air_k;
+        let (coefficient, slope) = self.convection_coefficients(difference);
+        let radiation = 3.96e-8 * self.area_factor;
+        let (per_surface, per_radiant) = (4.0 * radiation * t3, 4.0 * radiation * radiant3);
+        let (convection, per_air) = (self.area_factor * coefficient * difference, self.area_factor * slope);
+        // L = fixed + own t' − per_radiant t_r' − per_air t_a', with t' = skin − I_cl L.
+        let skin_k = 308.7 - 0.028 * self.metabolic_w_m2;
+        let fixed = 0.75 * (per_radiant * radiant_k - per_surface * t) + (convection - per_air * difference);
+        let own = per_surface + per_air;
+        let inverse = 1.0 / (1.0 + self.insulation * own);
+        let dry = Line {
+            value: (fixed + own * skin_k - per_radiant * radiant.value - per_air * air_k) * inverse,
+            per_air_k: -(per_radiant * radiant.per_air_k + per_air) * inverse,
+        };
+        let surface = Line { value: skin_k - self.insulation * dry.value, per_air_k: -self.insulation * dry.per_air_k };
+        (surface, dry)
     }
 
     /// One Newton step of the clothing's surface: by how many K it moves, and the dry loss in W/m² after that.
     #[inline(always)]
     pub(crate) fn step_surface<R: Real>(&self, surface_k: R, air_k: R, radiant_k: R) -> (R, R) {
-        let (loss, _, shift) = self.surface_step(surface_k, air_k, radiant_k);
-        (shift, loss.w_m2 + loss.per_surface * shift)
-    }
-
-    /// The dry loss, the inverse slope of the clothing's heat balance over its surface temperature, and the Newton step.
-    #[inline(always)]
-    fn surface_step<R: Real>(&self, surface_k: R, air_k: R, radiant_k: R) -> (DryLoss<R>, R, R) {
         let loss = self.dry_loss(surface_k, air_k, radiant_k);
         let inverse = R::splat(1.0) / (loss.per_surface * self.insulation + 1.0);
         let excess = surface_k + loss.w_m2 * self.insulation - (308.7 - 0.028 * self.metabolic_w_m2);
-        (loss, inverse, -excess * inverse)
+        let shift = -excess * inverse;
+        (shift, loss.w_m2 + loss.per_surface * shift)
     }
 
     #[inline(always)]
@@ -209,8 +197,6 @@ impl PmvModel {
         DryLoss {
             w_m2: (t3 * t - radiant3 * radiant_k) * radiation + convection * self.area_factor,
             per_surface: t3 * (4.0 * radiation) + convection_slope * self.area_factor,
-            per_air: convection_slope * -self.area_factor,
-            per_radiant: radiant3 * (-4.0 * radiation),
         }
     }
 
@@ -263,9 +249,15 @@ impl PmvModel {
     /// Convective loss per clothed area `h_c · d` in W/m², and its slope over the difference `d` in K.
     #[inline(always)]
     fn convection<R: Real>(&self, difference: R) -> (R, R) {
+        let (coefficient, slope) = self.convection_coefficients(difference);
+        (coefficient * difference, slope)
+    }
+
+    /// `h_c` over a difference `d` in K, and the slope of `h_c · d`, in W/(m²K).
+    #[inline(always)]
+    fn convection_coefficients<R: Real>(&self, difference: R) -> (R, R) {
         let natural = difference.abs().sqrt().sqrt() * NATURAL_CONVECTION;
         let forced = R::splat(self.forced_convection);
-        let coefficient = natural.above(forced, natural, forced);
-        (coefficient * difference, natural.above(forced, natural * 1.25, forced))
+        (natural.above(forced, natural, forced), natural.above(forced, natural * 1.25, forced))
     }
 }

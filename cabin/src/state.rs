@@ -4,7 +4,8 @@
 //! the balances and the clothing's heat balance, which makes everything follow the cabin temperature along a line; the
 //! [`Target`] then says how far along it to go. No clothing iteration and no balance iteration is nested in another.
 
-use crate::comfort::Passenger;
+use crate::comfort::Nodes;
+use crate::pmv::Line;
 use crate::{Cabin, Design, Devices, Heaters, OperatingMode, Slopes, Temperatures};
 
 /// What a steady state has to fulfil besides the surface balances.
@@ -46,8 +47,8 @@ pub struct State {
     pub pmv: f64,
     /// Its slope over the cabin temperature in 1/K, above 0.
     pub pmv_slope: f64,
-    /// The two passengers of the quadrature.
-    gauss: [Passenger; 2],
+    /// Clothing of the two passengers of the quadrature, in the standard's kelvin (0 °C = 273 K).
+    clothes: [Line; 2],
 }
 
 /// Steps after which the iteration is given up; four are usual from a rough guess.
@@ -74,9 +75,8 @@ impl Cabin<'_> {
         };
         let slopes = Slopes { interior: 0.0, shell_inside: 0.0, shell_outside: 0.0, radiant_heater: 0.0 };
         // Clothing is some kelvin warmer than the air.
-        let surface_k = cabin_k + 5.0;
-        let gauss = self.views.nodes().map(|(view, weight)| Passenger::new(view, weight, surface_k));
-        State { temperatures, slopes, pmv: 0.0, pmv_slope: 0.0, gauss }
+        let clothes = [Line { value: cabin_k + 5.0, per_air_k: 0.0 }; 2];
+        State { temperatures, slopes, pmv: 0.0, pmv_slope: 0.0, clothes }
     }
 
     /// The steady state that fulfils a target, from a guess. The panels are off, or held at their target.
@@ -96,16 +96,16 @@ impl Cabin<'_> {
         if heaters == Heaters::On {
             state.temperatures.radiant_heater_k = self.heater_target_k;
         }
-        let mut gauss = state.gauss;
-        if !self.settle(state, &mut gauss, heaters, target) {
+        let mut clothes = state.clothes;
+        if !self.settle(state, &self.views.nodes(), &mut clothes, heaters, target) {
             return false;
         }
-        state.gauss = gauss;
+        state.clothes = clothes;
         // The kink moves a little as the state settles on the split quadrature.
         for _ in 0..2 {
-            let Some(view) = self.kink_view(&state.temperatures, &gauss) else { break };
-            let mut split = self.split(view, &gauss);
-            if !self.settle(state, &mut split, heaters, target) {
+            let Some(view) = self.kink_view(&state.temperatures, &clothes) else { break };
+            let (nodes, mut split) = self.split(view, &clothes);
+            if !self.settle(state, &nodes, &mut split, heaters, target) {
                 return false;
             }
         }
@@ -148,44 +148,61 @@ impl Cabin<'_> {
         None
     }
 
-    fn settle(&self, state: &mut State, passengers: &mut [Passenger], heaters: Heaters, target: Target) -> bool {
-        (0..MOST_STEPS).any(|_| self.step(state, passengers, heaters, target) < SETTLED_K)
+    fn settle<const N: usize>(
+        &self,
+        state: &mut State,
+        nodes: &Nodes<N>,
+        clothes: &mut [Line; N],
+        heaters: Heaters,
+        target: Target,
+    ) -> bool {
+        (0..MOST_STEPS).any(|_| self.step(state, nodes, clothes, heaters, target) < SETTLED_K)
     }
 
-    /// One Newton step; returns the largest change of a temperature in K.
-    fn step(&self, state: &mut State, passengers: &mut [Passenger], heaters: Heaters, target: Target) -> f64 {
-        let linear = self.linearise(&state.temperatures, heaters);
-        let slopes = linear.named_slopes();
-        let (pmv, pmv_slope) = self.vote_line(&state.temperatures, &linear, passengers);
+    /// One Newton step; returns by how many K all temperatures change together.
+    #[inline]
+    fn step<const N: usize>(
+        &self,
+        state: &mut State,
+        nodes: &Nodes<N>,
+        clothes: &mut [Line; N],
+        heaters: Heaters,
+        target: Target,
+    ) -> f64 {
+        let t = &mut state.temperatures;
+        let cubes = [t.radiant_heater_k, t.interior_k, t.shell_inside_k, t.shell_outside_k].map(|k| k * k * k);
+        let (balanced, slopes) = self.balanced(t, cubes, heaters);
+        let (vote, lines) = self.vote_line(t, cubes, (&balanced, &slopes), nodes, clothes);
         let cabin_step_k = match target {
             Target::CabinTemperature(_) => 0.0,
-            Target::Vote(vote) => (vote - pmv) / pmv_slope,
+            Target::Vote(pmv) => (pmv - vote.value) / vote.per_air_k,
             Target::Heat { curtain, heat_w, per_k, at_k } => {
-                let (taken_w, slope_w_k) = self.air_unit_heat_w(&state.temperatures, &slopes, curtain);
-                let [heater_k, interior_k, inside_k, _] = linear.shift_k;
-                let shift_w = self.g_heater * heater_k + self.g_interior * interior_k + self.g_shell * inside_k;
-                let brought_w = heat_w + per_k * (state.temperatures.cabin_k - at_k);
-                (brought_w + shift_w - taken_w) / (slope_w_k - per_k)
+                let (taken_w, slope_w_k) = self.air_unit_heat_w(&balanced, &slopes, curtain);
+                let brought_w = heat_w + per_k * (t.cabin_k - at_k);
+                (brought_w - taken_w) / (slope_w_k - per_k)
             }
         };
         let cabin_step_k = cabin_step_k.clamp(-LONGEST_STEP_K, LONGEST_STEP_K);
-        let [heater_k, interior_k, inside_k, outside_k]: [f64; 4] =
-            std::array::from_fn(|i| linear.shift_k[i] + linear.slopes[i] * cabin_step_k);
-        let t = &mut state.temperatures;
+        // A sum, not the largest: it is no number as soon as one of them is none.
+        let mut moved_k = cabin_step_k.abs();
+        let mut follow = |k: &mut f64, balanced_k: f64, slope: f64| {
+            let next_k = balanced_k + slope * cabin_step_k;
+            moved_k += (next_k - *k).abs();
+            *k = next_k;
+        };
         t.cabin_k += cabin_step_k;
-        t.radiant_heater_k += heater_k;
-        t.interior_k += interior_k;
-        t.shell_inside_k += inside_k;
-        t.shell_outside_k += outside_k;
-        let mut largest_k = cabin_step_k.abs().max(interior_k.abs()).max(inside_k.abs());
-        largest_k = largest_k.max(outside_k.abs()).max(heater_k.abs());
-        for passenger in passengers {
-            largest_k = largest_k.max(passenger.step(cabin_step_k));
+        follow(&mut t.interior_k, balanced.interior_k, slopes.interior);
+        follow(&mut t.shell_inside_k, balanced.shell_inside_k, slopes.shell_inside);
+        follow(&mut t.shell_outside_k, balanced.shell_outside_k, slopes.shell_outside);
+        follow(&mut t.radiant_heater_k, balanced.radiant_heater_k, slopes.radiant_heater);
+        for (clothing, line) in clothes.iter_mut().zip(lines) {
+            follow(&mut clothing.value, line.value, line.per_air_k);
+            clothing.per_air_k = line.per_air_k;
         }
         state.slopes = slopes;
-        state.pmv = pmv + pmv_slope * cabin_step_k;
-        state.pmv_slope = pmv_slope;
-        largest_k
+        state.pmv = vote.value + vote.per_air_k * cabin_step_k;
+        state.pmv_slope = vote.per_air_k;
+        moved_k
     }
 }
 
@@ -217,7 +234,7 @@ impl State {
     /// All unknowns with their slopes over the vote.
     fn unknowns(&self) -> [(f64, f64); 7] {
         let (t, slopes) = (&self.temperatures, &self.slopes);
-        let [a, b] = &self.gauss;
+        let [a, b] = &self.clothes;
         let per_vote_k = 1.0 / self.pmv_slope;
         [
             (t.cabin_k, 1.0),
@@ -225,8 +242,8 @@ impl State {
             (t.shell_inside_k, slopes.shell_inside),
             (t.shell_outside_k, slopes.shell_outside),
             (t.radiant_heater_k, slopes.radiant_heater),
-            (a.surface_k, a.slope),
-            (b.surface_k, b.slope),
+            (a.value, a.per_air_k),
+            (b.value, b.per_air_k),
         ]
         .map(|(x, slope)| (x, slope * per_vote_k))
     }
@@ -234,7 +251,7 @@ impl State {
     fn with(&self, [cabin_k, interior_k, shell_inside_k, shell_outside_k, radiant_heater_k, a, b]: [f64; 7]) -> Self {
         let mut guess = *self;
         guess.temperatures = Temperatures { cabin_k, interior_k, shell_inside_k, shell_outside_k, radiant_heater_k };
-        (guess.gauss[0].surface_k, guess.gauss[1].surface_k) = (a, b);
+        (guess.clothes[0].value, guess.clothes[1].value) = (a, b);
         guess
     }
 }
