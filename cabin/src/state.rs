@@ -109,6 +109,10 @@ impl Cabin<'_> {
                 return false;
             }
         }
+        if let Target::Vote(pmv) = target {
+            // As it is to rounding: a window of no width then has votes of 0, not of 1e-27.
+            state.pmv = pmv;
+        }
         true
     }
 

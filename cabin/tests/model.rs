@@ -141,6 +141,7 @@ proptest! {
         let near = cabin.rough_state(cabin_k + 8.0);
         let vote = cabin.state(Target::Vote(full), heaters, &near).expect("settles");
         prop_assert!((vote.temperatures.cabin_k - cabin_k).abs() < 1e-6, "{vote:?} {cabin_k}");
+        prop_assert_eq!(vote.pmv, full);
         prop_assert!((mean(&vote.temperatures) - full).abs() < 1e-8);
         let passive = cabin.state(Target::passive(on), heaters, &near).expect("settles");
         let (heat_w, _) = cabin.air_unit_heat_w(&passive.temperatures, &passive.slopes, on);
