@@ -51,7 +51,7 @@ impl Cabin<'_> {
         clothes: &[Line; N],
     ) -> (Line, [Line; N]) {
         let view_rest = 1.0 - self.view_interior;
-        let (interior3, inside3) = (self.view_interior * interior3, inside3);
+        let interior3 = self.view_interior * interior3;
         // T_mr⁴ = F_rh T_rh⁴ + (1 − F_int − F_rh) T_s,i⁴ + F_int T_int⁴ (paper, section 2.2): what is seen by all, and what more
         // for each unit of F_rh; now, where the balances hold, and for each kelvin of the cabin.
         let seen = |heater: f64, interior: f64, inside: f64| {

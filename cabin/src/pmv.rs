@@ -112,7 +112,7 @@ impl PmvModel {
         let radiant3 = radiant * radiant * radiant;
         let resistance = self.insulation * self.area_factor;
         let radiative = 3.96e-8 * resistance;
-        let skin = 308.7 - 0.028 * m;
+        let skin = self.skin_k();
 
         // Surface temperature t of the clothing, in the annex's kelvin:
         // t + radiative (t⁴ − t_r⁴) + resistance · h_c(t) (t − t_a) = skin.
@@ -166,7 +166,7 @@ impl PmvModel {
         let (per_surface, per_radiant) = (4.0 * radiation * t3, 4.0 * radiation * radiant3);
         let (convection, per_air) = (self.area_factor * coefficient * difference, self.area_factor * slope);
         // L = fixed + own t' − per_radiant t_r' − per_air t_a', with t' = skin − I_cl L.
-        let skin_k = 308.7 - 0.028 * self.metabolic_w_m2;
+        let skin_k = self.skin_k();
         let fixed = 0.75 * (per_radiant * radiant_k - per_surface * t) + (convection - per_air * difference);
         let own = per_surface + per_air;
         let inverse = 1.0 / (1.0 + self.insulation * own);
@@ -183,7 +183,7 @@ impl PmvModel {
     pub(crate) fn step_surface<R: Real>(&self, surface_k: R, air_k: R, radiant_k: R) -> (R, R) {
         let loss = self.dry_loss(surface_k, air_k, radiant_k);
         let inverse = R::splat(1.0) / (loss.per_surface * self.insulation + 1.0);
-        let excess = surface_k + loss.w_m2 * self.insulation - (308.7 - 0.028 * self.metabolic_w_m2);
+        let excess = surface_k + loss.w_m2 * self.insulation - self.skin_k();
         let shift = -excess * inverse;
         (shift, loss.w_m2 + loss.per_surface * shift)
     }
@@ -204,7 +204,7 @@ impl PmvModel {
     /// where no radiation does that, and for naked people, whose surface does not depend on it.
     pub(crate) fn radiant_of_surface_k(&self, surface_k: f64, air_k: f64) -> Option<f64> {
         let t = surface_k;
-        let loss_w_m2 = (308.7 - 0.028 * self.metabolic_w_m2 - t) / self.insulation;
+        let loss_w_m2 = (self.skin_k() - t) / self.insulation;
         let radiation = loss_w_m2 / self.area_factor - self.convection(t - air_k).0;
         let fourth = t * t * t * t - radiation / 3.96e-8;
         (fourth > 0.0 && fourth.is_finite()).then(|| fourth.sqrt().sqrt())
@@ -244,6 +244,12 @@ impl PmvModel {
             && water_vapour_pressure_pa(self.relative_humidity, air_c) <= 2700.0
             && pmv.abs() <= 2.0 + 1e-9;
         if inside { StandardRange::Inside } else { StandardRange::Outside }
+    }
+
+    /// Mean skin temperature in the annex's kelvin: 35.7 °C − 0.028 M.
+    #[inline]
+    fn skin_k(&self) -> f64 {
+        308.7 - 0.028 * self.metabolic_w_m2
     }
 
     /// Convective loss per clothed area `h_c · d` in W/m², and its slope over the difference `d` in K.
