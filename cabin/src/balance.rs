@@ -19,6 +19,16 @@ pub enum Heaters {
     On,
 }
 
+impl Heaters {
+    /// 1 where they are held at their target, 0 where they are off.
+    pub(crate) fn held(self) -> f64 {
+        match self {
+            Self::Off => 0.0,
+            Self::On => 1.0,
+        }
+    }
+}
+
 /// The cabin under given disturbances, with all coefficients ready.
 #[derive(Debug, Clone, Copy)]
 pub struct Cabin<'a> {
@@ -128,27 +138,41 @@ impl<'a> Cabin<'a> {
     /// cabin temperature, which is positive.
     #[must_use]
     pub fn air_unit_heat_w(&self, t: &Temperatures, slopes: &Slopes, curtain: bool) -> (f64, f64) {
-        let (door_w, door_slope) = self.door_w(t.cabin_k, curtain);
-        let heat_w = self.g_shell * (t.cabin_k - t.shell_inside_k)
-            + self.g_interior * (t.cabin_k - t.interior_k)
-            + self.g_heater * (t.cabin_k - t.radiant_heater_k)
-            + door_w
+        self.air_unit_heat_abreast_w(t, slopes, self.door_loss_share(curtain))
+    }
+
+    /// As [`Cabin::air_unit_heat_w`], for one bus or several; `door_loss_share` is [`Cabin::door_loss_share`] of each.
+    #[must_use]
+    #[inline(always)]
+    pub fn air_unit_heat_abreast_w<R: Real>(
+        &self,
+        t: &Temperatures<R>,
+        slopes: &Slopes<R>,
+        door_loss_share: R,
+    ) -> (R, R) {
+        let door_w_k = self.door_conductance_w_k(t.cabin_k, door_loss_share);
+        let heat_w = (t.cabin_k - t.shell_inside_k) * self.g_shell
+            + (t.cabin_k - t.interior_k) * self.g_interior
+            + (t.cabin_k - t.radiant_heater_k) * self.g_heater
+            + door_w_k * (t.cabin_k - self.ambient_k)
             - self.gains_w[0]
             - self.gains_w[1];
-        let slope = self.g_shell * (1.0 - slopes.shell_inside)
-            + self.g_interior * (1.0 - slopes.interior)
-            + self.g_heater * (1.0 - slopes.radiant_heater)
-            + door_slope;
+        let one = R::splat(1.0);
+        let slope = (one - slopes.shell_inside) * self.g_shell
+            + (one - slopes.interior) * self.g_interior
+            + (one - slopes.radiant_heater) * self.g_heater
+            + door_w_k * 1.5;
         (heat_w, slope)
     }
 
     /// Electric power in W that holds the radiant heaters at their temperature; 0 to rounding while they are off.
     #[must_use]
-    pub fn radiant_heater_power_w(&self, t: &Temperatures) -> f64 {
+    #[inline(always)]
+    pub fn radiant_heater_power_w<R: Real>(&self, t: &Temperatures<R>) -> R {
         let heater4 = pow4(t.radiant_heater_k);
-        self.g_heater * (t.radiant_heater_k - t.cabin_k)
-            + self.r_heater_interior * (heater4 - pow4(t.interior_k))
-            + self.r_heater_shell * (heater4 - pow4(t.shell_inside_k))
+        (t.radiant_heater_k - t.cabin_k) * self.g_heater
+            + (heater4 - pow4(t.interior_k)) * self.r_heater_interior
+            + (heater4 - pow4(t.shell_inside_k)) * self.r_heater_shell
     }
 
     /// Every heat flow at the given temperatures, with the given air unit heat and heater power in W.
@@ -195,13 +219,8 @@ impl<'a> Cabin<'a> {
         if curtain { self.curtain_keeps } else { 1.0 }
     }
 
-    /// Door loss in W (eq. qdoor, exact square root) and its slope in W/K.
-    #[inline]
-    fn door_w(&self, cabin_k: f64, curtain: bool) -> (f64, f64) {
-        let conductance = self.door_conductance_w_k(cabin_k, self.door_loss_share(curtain));
-        (conductance * (cabin_k - self.ambient_k), 1.5 * conductance)
-    }
-
+    /// Door loss for each kelvin between cabin and ambient air, in W/K (eq. qdoor, exact square root). The loss's slope over the
+    /// cabin temperature is half as much again.
     #[inline(always)]
     pub(crate) fn door_conductance_w_k<R: Real>(&self, cabin_k: R, door_loss_share: R) -> R {
         door_loss_share * self.door * (cabin_k - self.ambient_k).abs().sqrt()
@@ -211,58 +230,57 @@ impl<'a> Cabin<'a> {
     /// how they follow it. `cubes` are the third powers of heaters, interior, inside and outside of the shell.
     ///
     /// A flow r (a⁴ − b⁴) is to first order 4 r (a³ a' − b³ b') less three times itself, which gives the new temperatures
-    /// themselves, not their changes: convection is linear in them and need not be known.
-    #[inline]
-    pub(crate) fn balanced(
+    /// themselves, not their changes: convection is linear in them and need not be known. `held` is 1 where the heaters are held
+    /// at their temperature, 0 where they are off.
+    #[inline(always)]
+    pub(crate) fn balanced<R: Real>(
         &self,
-        t: &Temperatures,
-        [heater3, interior3, inside3, outside3]: [f64; 4],
-        heaters: Heaters,
-    ) -> (Temperatures, Slopes) {
+        t: &Temperatures<R>,
+        [heater3, interior3, inside3, outside3]: [R; 4],
+        held: R,
+    ) -> (Temperatures<R>, Slopes<R>) {
         let (r_hi, r_hs, r_is) = (4.0 * self.r_heater_interior, 4.0 * self.r_heater_shell, 4.0 * self.r_interior_shell);
         // Slopes of the radiation in W/K over its source and its target, and three times the flow.
-        let (hi_source, hi_target) = (r_hi * heater3, r_hi * interior3);
-        let (hs_source, hs_target) = (r_hs * heater3, r_hs * inside3);
-        let (is_source, is_target) = (r_is * interior3, r_is * inside3);
-        let outward = 4.0 * self.r_outside * outside3;
-        let hi_w = 0.75 * (hi_source * t.radiant_heater_k - hi_target * t.interior_k);
-        let hs_w = 0.75 * (hs_source * t.radiant_heater_k - hs_target * t.shell_inside_k);
-        let is_w = 0.75 * (is_source * t.interior_k - is_target * t.shell_inside_k);
+        let (hi_source, hi_target) = (heater3 * r_hi, interior3 * r_hi);
+        let (hs_source, hs_target) = (heater3 * r_hs, inside3 * r_hs);
+        let (is_source, is_target) = (interior3 * r_is, inside3 * r_is);
+        let outward = outside3 * (4.0 * self.r_outside);
+        let hi_w = (hi_source * t.radiant_heater_k - hi_target * t.interior_k) * 0.75;
+        let hs_w = (hs_source * t.radiant_heater_k - hs_target * t.shell_inside_k) * 0.75;
+        let is_w = (is_source * t.interior_k - is_target * t.shell_inside_k) * 0.75;
 
         // The heaters follow interior and inside of the shell, or are held at their target.
-        let (heater_k, heater_inverse) = match heaters {
-            Heaters::On => (t.radiant_heater_k, 0.0),
-            Heaters::Off => {
-                let inverse = 1.0 / (self.g_heater + hi_source + hs_source);
-                ((self.g_heater * t.cabin_k + hi_w + hs_w) * inverse, inverse)
-            }
-        };
-        let [per_interior, per_inside, per_cabin] =
-            [hi_target, hs_target, self.g_heater].map(|w_k| w_k * heater_inverse);
+        let (half, one) = (R::splat(0.5), R::splat(1.0));
+        let free_inverse = one / (hi_source + hs_source + self.g_heater);
+        let free_k = (t.cabin_k * self.g_heater + hi_w + hs_w) * free_inverse;
+        let heater_inverse = held.above(half, R::splat(0.0), free_inverse);
+        let heater_k = held.above(half, t.radiant_heater_k, free_k);
+        let (per_interior, per_inside) = (hi_target * heater_inverse, hs_target * heater_inverse);
+        let per_cabin = heater_inverse * self.g_heater;
         // The outside of the shell follows its inside.
-        let outside_inverse = 1.0 / (self.g_conduction + self.g_outside + outward);
-        let outside_k = (self.outside_w + 0.75 * outward * t.shell_outside_k) * outside_inverse;
-        let outside_per_inside = self.g_conduction * outside_inverse;
+        let outside_inverse = one / (outward + (self.g_conduction + self.g_outside));
+        let outside_k = (outward * t.shell_outside_k * 0.75 + self.outside_w) * outside_inverse;
+        let outside_per_inside = outside_inverse * self.g_conduction;
 
         // What is left for interior and inside of the shell: a two-by-two system.
-        let interior_own = self.g_interior + hi_target + is_source - hi_source * per_interior;
+        let interior_own = hi_target + is_source + self.g_interior - hi_source * per_interior;
         let interior_other = is_target + hi_source * per_inside;
-        let inside_own = self.g_shell + hs_target + is_target + self.g_conduction
+        let inside_own = hs_target + is_target + (self.g_shell + self.g_conduction)
             - hs_source * per_inside
-            - self.g_conduction * outside_per_inside;
+            - outside_per_inside * self.g_conduction;
         let inside_other = is_source + hs_source * per_interior;
-        let inverse = 1.0 / (interior_own * inside_own - interior_other * inside_other);
-        let solve = |interior: f64, inside: f64| {
+        let inverse = one / (interior_own * inside_own - interior_other * inside_other);
+        let solve = |interior: R, inside: R| {
             let interior_times = inside_own * interior + interior_other * inside;
             (interior_times * inverse, (interior_own * inside + inside_other * interior) * inverse)
         };
         let (interior_k, shell_inside_k) = solve(
-            self.solar.interior_w + self.g_interior * t.cabin_k + hi_source * heater_k + is_w - hi_w,
-            self.solar.shell_inside_w + self.g_shell * t.cabin_k + hs_source * heater_k - hs_w - is_w
-                + self.g_conduction * outside_k,
+            t.cabin_k * self.g_interior + self.solar.interior_w + hi_source * heater_k + is_w - hi_w,
+            t.cabin_k * self.g_shell + self.solar.shell_inside_w + hs_source * heater_k - hs_w - is_w
+                + outside_k * self.g_conduction,
         );
         let (interior, shell_inside) =
-            solve(self.g_interior + hi_source * per_cabin, self.g_shell + hs_source * per_cabin);
+            solve(hi_source * per_cabin + self.g_interior, hs_source * per_cabin + self.g_shell);
         let temperatures = Temperatures {
             cabin_k: t.cabin_k,
             interior_k,

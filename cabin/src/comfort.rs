@@ -2,7 +2,7 @@
 
 use crate::balance::pow4;
 use crate::pmv::Line;
-use crate::{Cabin, Real, Slopes, StandardRange, Temperatures, ZERO_CELSIUS_K};
+use crate::{Cabin, Real, Slopes, StandardRange, State, Temperatures, ZERO_CELSIUS_K};
 
 /// The passengers of a quadrature: view factor to the radiant heaters and weight of each.
 pub(crate) type Nodes<const N: usize> = [(f64, f64); N];
@@ -41,62 +41,78 @@ impl Cabin<'_> {
 
     /// Mean vote of the passengers where balances and clothing hold to first order about the given temperatures, and their
     /// clothing there in the standard's kelvin. `cubes` as in [`Cabin::balanced`], whose result is `balanced` and `slopes`.
-    #[inline]
-    pub(crate) fn vote_line<const N: usize>(
+    #[inline(always)]
+    pub(crate) fn vote_line<R: Real, const N: usize>(
         &self,
-        t: &Temperatures,
-        [heater3, interior3, inside3, _]: [f64; 4],
-        (balanced, slopes): (&Temperatures, &Slopes),
+        t: &Temperatures<R>,
+        [heater3, interior3, inside3, _]: [R; 4],
+        (balanced, slopes): (&Temperatures<R>, &Slopes<R>),
         nodes: &Nodes<N>,
-        clothes: &[Line; N],
-    ) -> (Line, [Line; N]) {
-        let view_rest = 1.0 - self.view_interior;
-        let interior3 = self.view_interior * interior3;
+        clothes: &[Line<R>; N],
+    ) -> (Line<R>, [Line<R>; N]) {
+        let interior3 = interior3 * self.view_interior;
         // T_mr⁴ = F_rh T_rh⁴ + (1 − F_int − F_rh) T_s,i⁴ + F_int T_int⁴ (paper, section 2.2): what is seen by all, and what more
         // for each unit of F_rh; now, where the balances hold, and for each kelvin of the cabin.
-        let seen = |heater: f64, interior: f64, inside: f64| {
+        let seen = |heater: R, interior: R, inside: R| {
             let inside = inside3 * inside;
-            (interior3 * interior + view_rest * inside, heater3 * heater - inside)
+            (interior3 * interior + inside * (1.0 - self.view_interior), heater3 * heater - inside)
         };
         let now = seen(t.radiant_heater_k, t.interior_k, t.shell_inside_k);
         let then = seen(balanced.radiant_heater_k, balanced.interior_k, balanced.shell_inside_k);
         let slope = seen(slopes.radiant_heater, slopes.interior, slopes.shell_inside);
         let air_k = t.cabin_k - STANDARD_SHIFT_K;
-        let (mut dry_w_m2, mut dry_slope) = (0.0, 0.0);
+        let (mut dry_w_m2, mut dry_slope) = (R::splat(0.0), R::splat(0.0));
         let mut lines = *clothes;
         for ((view, weight), clothing) in nodes.iter().zip(&mut lines) {
-            let fourth = now.0 + view * now.1;
+            let fourth = now.0 + now.1 * *view;
             let radiant_k = fourth.sqrt().sqrt();
             // To first order the new T_mr is T_mr⁻³ times the cubes with the new temperatures.
             let per_cube = radiant_k / fourth;
             let radiant = Line {
-                value: (then.0 + view * then.1) * per_cube - STANDARD_SHIFT_K,
-                per_air_k: (slope.0 + view * slope.1) * per_cube,
+                value: (then.0 + then.1 * *view) * per_cube - STANDARD_SHIFT_K,
+                per_air_k: (slope.0 + slope.1 * *view) * per_cube,
             };
             let (surface, dry) = self.pmv.clothing(clothing.value, air_k, radiant_k - STANDARD_SHIFT_K, radiant);
             *clothing = surface;
-            dry_w_m2 += weight * dry.value;
-            dry_slope += weight * dry.per_air_k;
+            dry_w_m2 = dry_w_m2 + dry.value * *weight;
+            dry_slope = dry_slope + dry.per_air_k * *weight;
         }
         let (value, per_air_k) = self.pmv.vote(dry_w_m2, dry_slope, t.cabin_k - ZERO_CELSIUS_K);
         (Line { value, per_air_k }, lines)
     }
 
+    /// 1 where natural convection at clothing of a surface temperature in the standard's kelvin exceeds the forced one, 0 where it
+    /// does not.
+    #[inline(always)]
+    pub(crate) fn has_natural_convection<R: Real>(&self, cabin_k: R, surface_k: R) -> R {
+        let excess_k = (surface_k - (cabin_k - STANDARD_SHIFT_K)).abs();
+        excess_k.above(R::splat(self.pmv.natural_convection_from_k()), R::splat(1.0), R::splat(0.0))
+    }
+
+    /// 1 where the kink of [`Cabin::kink_view`] may lie between passengers, 0 where it does not.
+    #[inline(always)]
+    pub(crate) fn near_kink<R: Real>(&self, state: &State<R>) -> R {
+        let [least, largest] = self.views.range();
+        // What the surface varies over all passengers, half as much again, tells most states from those near a kink.
+        let varies_k = (self.clothing_per_view_k(&state.clothes) * (1.5 * (largest - least))).abs();
+        let excess_k = (state.clothes[0].value - (state.temperatures.cabin_k - STANDARD_SHIFT_K)).abs();
+        let beyond_k = (excess_k - self.pmv.natural_convection_from_k()).abs();
+        // 0 as well where all passengers see the same and there is no number.
+        varies_k.above(beyond_k, R::splat(1.0), R::splat(0.0))
+    }
+
     /// The view factor that parts passengers with natural from those with forced convection at their clothing: there the
-    /// vote has a kink, over which no quadrature is good. `None` where it lies between no two passengers. `clothes` are
-    /// those of the two passengers of the whole, settled.
-    pub(crate) fn kink_view(&self, t: &Temperatures, clothes: &[Line; 2]) -> Option<f64> {
+    /// vote has a kink, over which no quadrature is good. `None` where it lies between no two passengers. The state's clothes
+    /// are those of the two passengers of the whole, settled.
+    pub(crate) fn kink_view(&self, state: &State) -> Option<f64> {
+        if !self.near_kink(state).any() {
+            return None;
+        }
+        let t = &state.temperatures;
         let air_k = t.cabin_k - STANDARD_SHIFT_K;
         let kink_k = self.pmv.natural_convection_from_k();
         let [least, largest] = self.views.range();
-        // What the surface varies over all passengers, half as much again, tells most states from those near a kink.
-        let varies_k = 1.5 * (self.clothing_per_view_k(clothes) * (largest - least)).abs();
-        let excess_k = clothes[0].value - air_k;
-        // False as well where all passengers see the same and there is no number.
-        let near = (excess_k.abs() - kink_k).abs() < varies_k;
-        if !near {
-            return None;
-        }
+        let excess_k = state.clothes[0].value - air_k;
         let [heater4, interior4, shell4] = [t.radiant_heater_k, t.interior_k, t.shell_inside_k].map(pow4);
         let radiant_k = self.pmv.radiant_of_surface_k(air_k + kink_k.copysign(excess_k), air_k)? + STANDARD_SHIFT_K;
         let lacking = pow4(radiant_k) - self.view_interior * interior4 - (1.0 - self.view_interior) * shell4;
@@ -115,9 +131,10 @@ impl Cabin<'_> {
     }
 
     /// How much warmer clothing is for each unit of view factor; no number where all see the same.
-    fn clothing_per_view_k(&self, [a, b]: &[Line; 2]) -> f64 {
+    #[inline(always)]
+    fn clothing_per_view_k<R: Real>(&self, [a, b]: &[Line<R>; 2]) -> R {
         let [(view_a, _), (view_b, _)] = self.views.nodes();
-        (b.value - a.value) / (view_b - view_a)
+        (b.value - a.value) * (1.0 / (view_b - view_a))
     }
 
     /// The vote of one passenger with the given view factor to the radiant heaters.
@@ -128,7 +145,8 @@ impl Cabin<'_> {
 
     /// Mean radiant temperature of the average passenger in K (paper, section 2.2).
     #[must_use]
-    pub fn mean_radiant_temperature_k(&self, t: &Temperatures) -> f64 {
+    #[inline(always)]
+    pub fn mean_radiant_temperature_k<R: Real>(&self, t: &Temperatures<R>) -> R {
         self.mean_radiant_k(t, self.views.mean())
     }
 
@@ -138,8 +156,9 @@ impl Cabin<'_> {
         self.pmv.standard_range(cabin_k - ZERO_CELSIUS_K, mean_radiant_k - ZERO_CELSIUS_K, pmv)
     }
 
-    fn mean_radiant_k(&self, t: &Temperatures, view: f64) -> f64 {
-        self.radiant_k([t.radiant_heater_k, t.interior_k, t.shell_inside_k].map(pow4), view)
+    #[inline(always)]
+    fn mean_radiant_k<R: Real>(&self, t: &Temperatures<R>, view: f64) -> R {
+        self.radiant_k([pow4(t.radiant_heater_k), pow4(t.interior_k), pow4(t.shell_inside_k)], view)
     }
 
     /// Mean radiant temperature in K of who sees so much of the heaters, from the fourth powers of heaters, interior and inside

@@ -55,4 +55,14 @@ impl Design {
     pub fn is_limited(&self) -> bool {
         self.heating_limit.is_some() || self.cooling_limit.is_some() || self.backup_heater_w > 0.0
     }
+
+    /// Whether another design has the same air unit: COP, limits and back-up heater.
+    #[must_use]
+    pub fn has_air_unit_of(&self, other: &Self) -> bool {
+        self.heating_cop == other.heating_cop
+            && self.cooling_cop == other.cooling_cop
+            && self.heating_limit == other.heating_limit
+            && self.cooling_limit == other.cooling_limit
+            && self.backup_heater_w == other.backup_heater_w
+    }
 }

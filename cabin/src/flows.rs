@@ -17,17 +17,18 @@ pub struct Temperatures<R = f64> {
     pub radiant_heater_k: R,
 }
 
-/// How the settled temperatures change with the cabin temperature, in K/K, each between 0 and 1.
+/// How the settled temperatures change with the cabin temperature, in K/K, each between 0 and 1; of one bus, or of several
+/// abreast.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Slopes {
+pub struct Slopes<R = f64> {
     /// Of the interior.
-    pub interior: f64,
+    pub interior: R,
     /// Of the inside of the shell.
-    pub shell_inside: f64,
+    pub shell_inside: R,
     /// Of the outside of the shell.
-    pub shell_outside: f64,
+    pub shell_outside: R,
     /// Of the radiant heaters.
-    pub radiant_heater: f64,
+    pub radiant_heater: R,
 }
 
 /// Every heat flow of the model in W, positive in the direction of the paper's equations.

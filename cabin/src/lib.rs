@@ -8,6 +8,7 @@
 //! The vocabulary of the whole program lives here too: [`Disturbances`] of a sample, a [`Design`] with its [`Devices`], a
 //! [`ComfortWindow`], the [`Operation`] that is found for them, and the [`Outcome`] of looking for one.
 
+mod abreast;
 mod balance;
 mod changes;
 mod clothing;
@@ -17,8 +18,10 @@ mod design;
 mod devices;
 mod disturbances;
 mod flows;
+mod lanes;
 mod limits;
 mod load;
+mod newton;
 mod operation;
 mod passengers;
 mod pmv;
@@ -39,6 +42,7 @@ pub use design::{Design, Heating};
 pub use devices::Devices;
 pub use disturbances::{Disturbances, DisturbancesError};
 pub use flows::{HeatFlows, Slopes, Temperatures};
+pub use lanes::Lanes;
 pub use limits::{LimitOf, PowerLimit, PowerLimitError, Supply};
 pub use load::LoadChange;
 pub use operation::{Candidate, Infeasible, OperatingMode, Operation, Optimum, Outcome};

@@ -21,6 +21,8 @@ pub struct PmvModel {
     sensitivity: f64,
     /// Sweat loss and its like: what does not depend on temperature, in W/m².
     fixed_loss_w_m2: f64,
+    /// Air temperature in °C from which the vapour pressure is above [`MOST_VAPOUR_PA`].
+    humid_from_c: f64,
 }
 
 /// A predicted mean vote with its slopes.
@@ -38,9 +40,9 @@ pub struct PmvPoint {
 
 /// A quantity to first order: with the air as warm as it is, and its slope over the air temperature.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Line {
-    pub value: f64,
-    pub per_air_k: f64,
+pub(crate) struct Line<R = f64> {
+    pub value: R,
+    pub per_air_k: R,
 }
 
 /// Radiation and convection from the clothing's surface in W/m², and its slope in W/(m²K) over the surface's temperature.
@@ -62,11 +64,19 @@ const W_M2_PER_MET: f64 = 58.15;
 const M2_K_W_PER_CLO: f64 = 0.155;
 /// Coefficient of natural convection in W/(m² K^1.25).
 const NATURAL_CONVECTION: f64 = 2.38;
+/// Largest vapour pressure in Pa for which the index should be used (ISO 7730, clause 4.1).
+const MOST_VAPOUR_PA: f64 = 2700.0;
 
 /// Partial pressure of water vapour in Pa at a relative humidity 0 … 1 and an air temperature in °C (Annex D).
 #[must_use]
 pub fn water_vapour_pressure_pa(relative_humidity: f64, air_c: f64) -> f64 {
     relative_humidity * 1000.0 * (16.6536 - 4030.183 / (air_c + 235.0)).exp()
+}
+
+/// The air temperature in °C of a partial pressure: the inverse of [`water_vapour_pressure_pa`]. Infinite in dry air.
+fn air_of_vapour_pressure_c(relative_humidity: f64, vapour_pa: f64) -> f64 {
+    let inverse = 16.6536 - (vapour_pa / (1000.0 * relative_humidity)).ln();
+    if inverse > 0.0 { 4030.183 / inverse - 235.0 } else { f64::INFINITY }
 }
 
 /// Predicted percentage dissatisfied, 5 … 100 %, from the predicted mean vote (ISO 7730, eq. 5).
@@ -94,6 +104,7 @@ impl PmvModel {
             area_factor,
             forced_convection: 12.1 * air_velocity_m_s.sqrt(),
             sensitivity: 0.303 * (-0.036 * m).exp() + 0.028,
+            humid_from_c: air_of_vapour_pressure_c(relative_humidity, MOST_VAPOUR_PA),
             fixed_loss_w_m2: 0.00305 * (5733.0 - 6.99 * m) + sweat + 1.7e-5 * m * 5867.0 + 0.0014 * m * 34.0,
         }
     }
@@ -157,24 +168,31 @@ impl PmvModel {
     ///
     /// With the dry loss L(t) = f_cl (3.96e-8 (t⁴ − t_r⁴) + h_c(t) (t − t_a)) the balance is t + I_cl L = 35.7 °C − 0.028 M.
     #[inline(always)]
-    pub(crate) fn clothing(&self, surface_k: f64, air_k: f64, radiant_k: f64, radiant: Line) -> (Line, Line) {
+    pub(crate) fn clothing<R: Real>(
+        &self,
+        surface_k: R,
+        air_k: R,
+        radiant_k: R,
+        radiant: Line<R>,
+    ) -> (Line<R>, Line<R>) {
         let t = surface_k;
         let (t3, radiant3) = (t * t * t, radiant_k * radiant_k * radiant_k);
         let difference = t - air_k;
         let (coefficient, slope) = self.convection_coefficients(difference);
-        let radiation = 3.96e-8 * self.area_factor;
-        let (per_surface, per_radiant) = (4.0 * radiation * t3, 4.0 * radiation * radiant3);
-        let (convection, per_air) = (self.area_factor * coefficient * difference, self.area_factor * slope);
+        let radiation = 4.0 * 3.96e-8 * self.area_factor;
+        let (per_surface, per_radiant) = (t3 * radiation, radiant3 * radiation);
+        let (convection, per_air) = (coefficient * self.area_factor * difference, slope * self.area_factor);
         // L = fixed + own t' − per_radiant t_r' − per_air t_a', with t' = skin − I_cl L.
         let skin_k = self.skin_k();
-        let fixed = 0.75 * (per_radiant * radiant_k - per_surface * t) + (convection - per_air * difference);
+        let fixed = (per_radiant * radiant_k - per_surface * t) * 0.75 + (convection - per_air * difference);
         let own = per_surface + per_air;
-        let inverse = 1.0 / (1.0 + self.insulation * own);
+        let inverse = R::splat(1.0) / (own * self.insulation + 1.0);
         let dry = Line {
             value: (fixed + own * skin_k - per_radiant * radiant.value - per_air * air_k) * inverse,
             per_air_k: -(per_radiant * radiant.per_air_k + per_air) * inverse,
         };
-        let surface = Line { value: skin_k - self.insulation * dry.value, per_air_k: -self.insulation * dry.per_air_k };
+        let surface =
+            Line { value: dry.value * -self.insulation + skin_k, per_air_k: dry.per_air_k * -self.insulation };
         (surface, dry)
     }
 
@@ -241,7 +259,7 @@ impl PmvModel {
             && (10.0..=30.0).contains(&air_c)
             && (10.0..=40.0).contains(&radiant_c)
             && (0.0..=1.0).contains(&self.air_velocity_m_s)
-            && water_vapour_pressure_pa(self.relative_humidity, air_c) <= 2700.0
+            && air_c <= self.humid_from_c
             && pmv.abs() <= 2.0 + 1e-9;
         if inside { StandardRange::Inside } else { StandardRange::Outside }
     }

@@ -24,6 +24,8 @@ pub trait Real:
     fn exp(self) -> Self;
     /// `then` where this is above `limit`, `otherwise` elsewhere.
     fn above(self, limit: Self, then: Self, otherwise: Self) -> Self;
+    /// Whether any is not zero.
+    fn any(self) -> bool;
 }
 
 impl Real for f64 {
@@ -50,5 +52,10 @@ impl Real for f64 {
     #[inline(always)]
     fn above(self, limit: Self, then: Self, otherwise: Self) -> Self {
         if self > limit { then } else { otherwise }
+    }
+
+    #[inline(always)]
+    fn any(self) -> bool {
+        self != 0.0
     }
 }

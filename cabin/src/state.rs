@@ -1,66 +1,55 @@
-//! A steady state of the cabin, found by one Newton iteration over everything at once.
-//!
-//! Unknowns are the temperatures of cabin and surfaces and the clothing temperature of the passengers. A step linearises
-//! the balances and the clothing's heat balance, which makes everything follow the cabin temperature along a line; the
-//! [`Target`] then says how far along it to go. No clothing iteration and no balance iteration is nested in another.
+//! A steady state of the cabin: what it has to fulfil, how it is found from a guess, and how it leads to the next guess.
 
-use crate::comfort::Nodes;
+use crate::newton::{MOST_STEPS, Newton, SETTLED_K};
 use crate::pmv::Line;
-use crate::{Cabin, Design, Devices, Heaters, OperatingMode, Slopes, Temperatures};
+use crate::{Cabin, Design, Devices, Heaters, Lanes, OperatingMode, Real, Slopes, Temperatures};
 
-/// What a steady state has to fulfil besides the surface balances.
+/// What a steady state has to fulfil besides the surface balances; of one state, or of several abreast.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Target {
+pub enum Target<R = f64> {
     /// A cabin temperature in K.
-    CabinTemperature(f64),
+    CabinTemperature(R),
     /// A mean vote of the passengers.
-    Vote(f64),
+    Vote(R),
     /// Heat from the air unit along a line over the cabin temperature.
     Heat {
-        /// Whether the air curtains run.
-        curtain: bool,
+        /// [`Cabin::door_loss_share`].
+        door_loss_share: R,
         /// Heat in W at `at_k`.
-        heat_w: f64,
+        heat_w: R,
         /// How much more for each kelvin of the cabin; less than the heat that a state takes.
-        per_k: f64,
+        per_k: R,
         /// Cabin temperature in K.
-        at_k: f64,
+        at_k: R,
     },
 }
 
-impl Target {
-    /// No heat from the air unit, with the air curtains on or off.
+impl<R: Real> Target<R> {
+    /// No heat from the air unit, where so much of the door loss is left as [`Cabin::door_loss_share`] says.
     #[must_use]
-    pub fn passive(curtain: bool) -> Self {
-        Self::Heat { curtain, heat_w: 0.0, per_k: 0.0, at_k: 0.0 }
+    pub fn passive(door_loss_share: R) -> Self {
+        let zero = R::splat(0.0);
+        Self::Heat { door_loss_share, heat_w: zero, per_k: zero, at_k: zero }
     }
 }
 
-/// A steady state, or the guess of one.
+/// A steady state, or the guess of one; or several abreast.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct State {
+pub struct State<R = f64> {
     /// Temperatures of the reservoirs.
-    pub temperatures: Temperatures,
+    pub temperatures: Temperatures<R>,
     /// Slopes of the surfaces over the cabin temperature.
-    pub slopes: Slopes,
+    pub slopes: Slopes<R>,
     /// Mean over the passengers of the predicted mean vote.
-    pub pmv: f64,
+    pub pmv: R,
     /// Its slope over the cabin temperature in 1/K, above 0.
-    pub pmv_slope: f64,
+    pub pmv_slope: R,
     /// Clothing of the two passengers of the quadrature, in the standard's kelvin (0 °C = 273 K).
-    clothes: [Line; 2],
+    pub(crate) clothes: [Line<R>; 2],
 }
 
-/// Steps after which the iteration is given up; four are usual from a rough guess.
-const MOST_STEPS: usize = 60;
-/// Convergence is quadratic: what a step below 10 µK leaves behind is below rounding.
-const SETTLED_K: f64 = 1e-5;
-/// Longest step of the cabin temperature in K.
-const LONGEST_STEP_K: f64 = 50.0;
 /// Over which the slope of a capacity is taken, in K.
 const SLOPE_STEP_K: f64 = 1e-3;
-/// Farthest prediction beyond two states, in units of their distance.
-const FARTHEST: f64 = 3.0;
 
 impl Cabin<'_> {
     /// A guess that needs no knowledge: everything as warm as the cabin, at `cabin_k` in K.
@@ -90,28 +79,60 @@ impl Cabin<'_> {
 
     /// As [`Cabin::state`], with the guess in place; `false` where the iteration does not settle.
     pub fn settle_state(&self, target: Target, heaters: Heaters, state: &mut State) -> bool {
-        if let Target::CabinTemperature(cabin_k) = target {
+        let held = heaters.held();
+        let moving = self.settle_whole(&target, held, state);
+        !moving.any() && (!self.near_kink(state).any() || self.settle_split(&target, held, state))
+    }
+
+    /// As [`Cabin::settle_state`], of several states abreast, each with its heaters; says which of them settle. It is compiled
+    /// with the instructions of whoever calls it.
+    #[inline(always)]
+    pub fn settle_abreast<const W: usize>(
+        &self,
+        target: &Target<Lanes<W>>,
+        heaters: [Heaters; W],
+        state: &mut State<Lanes<W>>,
+    ) -> [bool; W] {
+        let held = Lanes(heaters.map(Heaters::held));
+        let moving = self.settle_whole(target, held, state);
+        let mut settles = moving.0.map(|moving| moving == 0.0);
+        let near = self.near_kink(state);
+        for lane in (0..W).filter(|lane| near.0[*lane] > 0.0) {
+            let mut own = state.lane(lane);
+            settles[lane] &= self.settle_split(&target.lane(lane), held.0[lane], &mut own);
+            state.set_lane(lane, &own);
+        }
+        settles
+    }
+
+    /// Settles on the quadrature of all passengers; 0 where it does, 1 where it does not.
+    #[inline(always)]
+    fn settle_whole<R: Real>(&self, target: &Target<R>, held: R, state: &mut State<R>) -> R {
+        if let Target::CabinTemperature(cabin_k) = *target {
             state.temperatures.cabin_k = cabin_k;
         }
-        if heaters == Heaters::On {
-            state.temperatures.radiant_heater_k = self.heater_target_k;
-        }
+        let heater_k = &mut state.temperatures.radiant_heater_k;
+        *heater_k = held.above(R::splat(0.5), R::splat(self.heater_target_k), *heater_k);
         let mut clothes = state.clothes;
-        if !self.settle(state, &self.views.nodes(), &mut clothes, heaters, target) {
-            return false;
-        }
+        let nodes = &self.views.nodes();
+        let moving = Newton { cabin: self, target, held, nodes, state, clothes: &mut clothes }.run();
         state.clothes = clothes;
+        moving
+    }
+
+    /// Settles a state that is settled on the quadrature of all passengers on a split one where they need it; `false` where the
+    /// iteration does not settle.
+    #[inline(never)]
+    fn settle_split(&self, target: &Target, held: f64, state: &mut State) -> bool {
+        let clothes = state.clothes;
         // The kink moves a little as the state settles on the split quadrature.
         for _ in 0..2 {
-            let Some(view) = self.kink_view(&state.temperatures, &clothes) else { break };
+            let Some(view) = self.kink_view(state) else { break };
             let (nodes, mut split) = self.split(view, &clothes);
-            if !self.settle(state, &nodes, &mut split, heaters, target) {
+            let newton = Newton { cabin: self, target, held, nodes: &nodes, state, clothes: &mut split };
+            if newton.run().any() {
                 return false;
             }
-        }
-        if let Target::Vote(pmv) = target {
-            // As it is to rounding: a window of no width then has votes of 0, not of 1e-27.
-            state.pmv = pmv;
         }
         true
     }
@@ -141,7 +162,8 @@ impl Cabin<'_> {
             let heat_w = most_w(at_k);
             // What rises with the temperature here is a rounding error.
             let per_k = ((most_w(at_k + SLOPE_STEP_K) - heat_w) / SLOPE_STEP_K).min(0.0);
-            let target = Target::Heat { curtain: devices.air_curtain, heat_w, per_k, at_k };
+            let door_loss_share = self.door_loss_share(devices.air_curtain);
+            let target = Target::Heat { door_loss_share, heat_w, per_k, at_k };
             if !self.settle_state(target, devices.heaters(), &mut state) {
                 return None;
             }
@@ -151,111 +173,59 @@ impl Cabin<'_> {
         }
         None
     }
-
-    fn settle<const N: usize>(
-        &self,
-        state: &mut State,
-        nodes: &Nodes<N>,
-        clothes: &mut [Line; N],
-        heaters: Heaters,
-        target: Target,
-    ) -> bool {
-        (0..MOST_STEPS).any(|_| self.step(state, nodes, clothes, heaters, target) < SETTLED_K)
-    }
-
-    /// One Newton step; returns by how many K all temperatures change together.
-    #[inline]
-    fn step<const N: usize>(
-        &self,
-        state: &mut State,
-        nodes: &Nodes<N>,
-        clothes: &mut [Line; N],
-        heaters: Heaters,
-        target: Target,
-    ) -> f64 {
-        let t = &mut state.temperatures;
-        let cubes = [t.radiant_heater_k, t.interior_k, t.shell_inside_k, t.shell_outside_k].map(|k| k * k * k);
-        let (balanced, slopes) = self.balanced(t, cubes, heaters);
-        let (vote, lines) = self.vote_line(t, cubes, (&balanced, &slopes), nodes, clothes);
-        let cabin_step_k = match target {
-            Target::CabinTemperature(_) => 0.0,
-            Target::Vote(pmv) => (pmv - vote.value) / vote.per_air_k,
-            Target::Heat { curtain, heat_w, per_k, at_k } => {
-                let (taken_w, slope_w_k) = self.air_unit_heat_w(&balanced, &slopes, curtain);
-                let brought_w = heat_w + per_k * (t.cabin_k - at_k);
-                (brought_w - taken_w) / (slope_w_k - per_k)
-            }
-        };
-        let cabin_step_k = cabin_step_k.clamp(-LONGEST_STEP_K, LONGEST_STEP_K);
-        // A sum, not the largest: it is no number as soon as one of them is none.
-        let mut moved_k = cabin_step_k.abs();
-        let mut follow = |k: &mut f64, balanced_k: f64, slope: f64| {
-            let next_k = balanced_k + slope * cabin_step_k;
-            moved_k += (next_k - *k).abs();
-            *k = next_k;
-        };
-        t.cabin_k += cabin_step_k;
-        follow(&mut t.interior_k, balanced.interior_k, slopes.interior);
-        follow(&mut t.shell_inside_k, balanced.shell_inside_k, slopes.shell_inside);
-        follow(&mut t.shell_outside_k, balanced.shell_outside_k, slopes.shell_outside);
-        follow(&mut t.radiant_heater_k, balanced.radiant_heater_k, slopes.radiant_heater);
-        for (clothing, line) in clothes.iter_mut().zip(lines) {
-            follow(&mut clothing.value, line.value, line.per_air_k);
-            clothing.per_air_k = line.per_air_k;
-        }
-        state.slopes = slopes;
-        state.pmv = vote.value + vote.per_air_k * cabin_step_k;
-        state.pmv_slope = vote.per_air_k;
-        moved_k
-    }
 }
 
-impl State {
-    /// A guess of the state with the vote `pmv`, from this state and another one on the way: Hermite's cubic through both with
-    /// their slopes, where it leads not much farther than their distance, or else the tangent.
-    #[must_use]
-    pub fn toward(&self, pmv: f64, other: Option<&Self>) -> Self {
-        let step = pmv - self.pmv;
-        let last = self.unknowns();
-        let values = match other {
-            Some(other) if step.abs() < FARTHEST * (self.pmv - other.pmv).abs() => {
-                let width = self.pmv - other.pmv;
-                let s = step / width;
-                // Hermite's basis at 1 + s.
-                let (first_value, first_slope) = (s * s * (3.0 + 2.0 * s), s * s * (1.0 + s) * width);
-                let last_slope = s * (1.0 + s) * (1.0 + s) * width;
-                let first = other.unknowns();
-                std::array::from_fn(|i| {
-                    let ((x0, slope0), (x1, slope1)) = (first[i], last[i]);
-                    x1 + (x0 - x1) * first_value + slope0 * first_slope + slope1 * last_slope
-                })
-            }
-            _ => last.map(|(x, slope)| x + slope * step),
-        };
-        self.with(values)
-    }
-
-    /// All unknowns with their slopes over the vote.
-    fn unknowns(&self) -> [(f64, f64); 7] {
+impl<R: Real> State<R> {
+    /// All unknowns, and their slopes over the cabin temperature.
+    #[inline(always)]
+    fn unknowns(&self) -> ([R; 7], [R; 7]) {
         let (t, slopes) = (&self.temperatures, &self.slopes);
         let [a, b] = &self.clothes;
-        let per_vote_k = 1.0 / self.pmv_slope;
-        [
-            (t.cabin_k, 1.0),
-            (t.interior_k, slopes.interior),
-            (t.shell_inside_k, slopes.shell_inside),
-            (t.shell_outside_k, slopes.shell_outside),
-            (t.radiant_heater_k, slopes.radiant_heater),
-            (a.value, a.per_air_k),
-            (b.value, b.per_air_k),
-        ]
-        .map(|(x, slope)| (x, slope * per_vote_k))
+        let values =
+            [t.cabin_k, t.interior_k, t.shell_inside_k, t.shell_outside_k, t.radiant_heater_k, a.value, b.value];
+        let one = R::splat(1.0);
+        let Slopes { interior, shell_inside, shell_outside, radiant_heater } = *slopes;
+        (values, [one, interior, shell_inside, shell_outside, radiant_heater, a.per_air_k, b.per_air_k])
     }
 
-    fn with(&self, [cabin_k, interior_k, shell_inside_k, shell_outside_k, radiant_heater_k, a, b]: [f64; 7]) -> Self {
+    #[inline(always)]
+    fn with(&self, [cabin_k, interior_k, shell_inside_k, shell_outside_k, radiant_heater_k, a, b]: [R; 7]) -> Self {
         let mut guess = *self;
         guess.temperatures = Temperatures { cabin_k, interior_k, shell_inside_k, shell_outside_k, radiant_heater_k };
         (guess.clothes[0].value, guess.clothes[1].value) = (a, b);
         guess
+    }
+
+    /// A guess of the state with the vote `pmv`, along the tangent.
+    #[must_use]
+    #[inline(always)]
+    pub fn along(&self, pmv: R) -> Self {
+        let step_k = (pmv - self.pmv) / self.pmv_slope;
+        let (mut values, slopes) = self.unknowns();
+        for (value, slope) in values.iter_mut().zip(slopes) {
+            *value = *value + slope * step_k;
+        }
+        self.with(values)
+    }
+
+    /// A guess of the state with the vote `pmv`, from this state and another one on the way: Hermite's cubic through both with
+    /// their slopes. It is good where it leads not much farther than their distance.
+    #[must_use]
+    #[inline(always)]
+    pub fn beyond(&self, pmv: R, other: &Self) -> Self {
+        let width = self.pmv - other.pmv;
+        let s = (pmv - self.pmv) / width;
+        let next = s + 1.0;
+        // Hermite's basis at 1 + s.
+        let other_value = s * s * (s * 2.0 + 3.0);
+        let other_slope = s * s * next * width / other.pmv_slope;
+        let own_slope = s * next * next * width / self.pmv_slope;
+        let ((others, other_slopes), (mut values, slopes)) = (other.unknowns(), self.unknowns());
+        for i in 0..values.len() {
+            let value = values[i];
+            values[i] =
+                value + (others[i] - value) * other_value + other_slopes[i] * other_slope + slopes[i] * own_slope;
+        }
+        self.with(values)
     }
 }

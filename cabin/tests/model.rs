@@ -143,7 +143,7 @@ proptest! {
         prop_assert!((vote.temperatures.cabin_k - cabin_k).abs() < 1e-6, "{vote:?} {cabin_k}");
         prop_assert_eq!(vote.pmv, full);
         prop_assert!((mean(&vote.temperatures) - full).abs() < 1e-8);
-        let passive = cabin.state(Target::passive(on), heaters, &near).expect("settles");
+        let passive = cabin.state(Target::passive(cabin.door_loss_share(on)), heaters, &near).expect("settles");
         let (heat_w, _) = cabin.air_unit_heat_w(&passive.temperatures, &passive.slopes, on);
         prop_assert!(heat_w.abs() < 1e-6, "{heat_w}");
         prop_assert!((mean(&passive.temperatures) - passive.pmv).abs() < 1e-8);

@@ -40,7 +40,7 @@ impl Judge {
         let most = variants.iter().map(|v| v.windows.len()).max().unwrap_or(0);
         let window = |place: usize| {
             let limit = |of: fn(&cabin::ComfortWindow) -> f64, none: f64| {
-                Lanes(std::array::from_fn(|lane| variants[lane].windows.get(place).map_or(none, of)))
+                cabin::Lanes(std::array::from_fn(|lane| variants[lane].windows.get(place).map_or(none, of)))
             };
             Window {
                 low: limit(|w| w.pmv_min(), f64::NEG_INFINITY),

@@ -14,6 +14,7 @@
 //! depend on curtain and heat source, `T_0` does not depend on the window: the work is shared between designs and
 //! windows, and a point costs a few multiplications.
 
+mod abreast;
 mod annual;
 mod blocks;
 mod certificate;
@@ -22,8 +23,10 @@ mod grid;
 mod method;
 mod near;
 pub mod nlp;
+mod offer;
 mod sample;
 mod states;
+mod steady;
 
 pub use annual::{AnnualMean, DAYS_OF_MONTH, YearSamples};
 pub use certificate::{CertificateError, certify};
@@ -33,4 +36,4 @@ pub use near::{Bus, YearStates};
 pub use sample::{SampleSolver, solve_blocks};
 
 /// Version of the method: it changes whenever a bit of a stored optimum would come out differently.
-pub const METHOD_VERSION: u32 = 6;
+pub const METHOD_VERSION: u32 = 7;

@@ -14,7 +14,8 @@ use std::sync::Arc;
 
 use crate::Grid;
 use crate::annual::{AnnualMean, MonthSum, Used, YearSamples, year};
-use crate::choice::{Best, Cheapest, Powers, cheapest, nearest};
+use crate::choice::{Best, nearest};
+use crate::offer::{Cheapest, Powers, Units};
 use crate::states::START_K;
 
 /// Where the search for the optima of a sample in a window starts, and what the unit does there; with the heaters off and on.
@@ -68,21 +69,23 @@ impl<'y> YearStates<'y> {
     #[must_use]
     pub fn means(&self, bus: &Bus, changed: impl Fn(&Disturbances) -> Disturbances) -> Vec<AnnualMean> {
         let windows = self.grid.windows();
-        let wanted = Devices::CHOICES.map(|choice| bus.designs.iter().any(|d| d.devices.include(choice)));
+        let mut units = Units::new(&bus.designs);
+        let wanted = units.wanted();
         let month = |(samples, starts): (&Vec<Disturbances>, &Vec<Option<Start>>)| {
             let mut sums = vec![MonthSum::default(); self.grid.points()];
             for (sample, starts) in samples.iter().zip(starts.chunks(windows.len())) {
                 let cabin = Cabin::new(&bus.vehicle, &bus.views, &changed(sample));
                 for (place, (window, start)) in windows.iter().zip(starts).enumerate() {
                     let start = start.or_else(|| Start::cold(&cabin, window));
-                    let bests = start.map_or([Some(Best::Lost); 4], |start| start.bests(&cabin, window, wanted));
+                    let bests = start.map_or([Best::Lost; 4], |start| start.bests(&cabin, window, wanted));
+                    units.price(&bus.designs, &bests);
                     for (design, spec) in bus.designs.iter().enumerate() {
                         let nearest = || {
                             let guess = start.map(|start| start.states[0])?;
                             let nearest = nearest(&cabin, spec, &bests, window, &guess)?;
                             Some(used(nearest.choice.mode, &nearest.powers))
                         };
-                        sums[design * windows.len() + place].add(of_design(&bests, spec, nearest));
+                        sums[design * windows.len() + place].add(of_design(&bests, units.cheapest(design), nearest));
                     }
                 }
             }
@@ -94,10 +97,10 @@ impl<'y> YearStates<'y> {
 }
 
 /// What a design does in the cheapest choice, or in the `nearest` one where none meets the window within its limits.
-fn of_design(bests: &[Option<Best>; 4], design: &Design, nearest: impl FnOnce() -> Option<Used>) -> Option<Used> {
-    match cheapest(design, bests) {
+fn of_design(bests: &[Best; 4], cheapest: Cheapest, nearest: impl FnOnce() -> Option<Used>) -> Option<Used> {
+    match cheapest {
         Cheapest::Choice { place, powers, .. } => match bests[place] {
-            Some(Best::Found(choice)) => Some(used(choice.mode, &powers)),
+            Best::Found(choice) => Some(used(choice.mode, &powers)),
             _ => None,
         },
         Cheapest::Limited => nearest(),
@@ -106,7 +109,7 @@ fn of_design(bests: &[Option<Best>; 4], design: &Design, nearest: impl FnOnce() 
 }
 
 fn used(mode: OperatingMode, powers: &Powers) -> Used {
-    Used { mode, hvac_power_w: powers.total_w, is_limited: powers.unmet_heat_w > 0.0 }
+    Used { mode, hvac_power_w: powers.total_w, is_limited: powers.supply.unmet_w > 0.0 }
 }
 
 impl Start {
@@ -122,18 +125,18 @@ impl Start {
         Some(Self { states, ends })
     }
 
-    /// The wanted choices at their best; `None` also where another choice is known to be cheaper.
-    fn bests(&self, cabin: &Cabin<'_>, window: &ComfortWindow, wanted: [bool; 4]) -> [Option<Best>; 4] {
-        let mut bests = [None; 4];
+    /// The wanted choices at their best; left out also where another choice is known to be cheaper.
+    fn bests(&self, cabin: &Cabin<'_>, window: &ComfortWindow, wanted: [bool; 4]) -> [Best; 4] {
+        let mut bests = [Best::LeftOut; 4];
         for (place, heaters) in [Heaters::Off, Heaters::On].into_iter().enumerate() {
             let search = Search { cabin, heaters, window, guess: &self.states[place], first: self.ends[place] };
             let mut known = [None; 2];
             for curtain in [false, true] {
                 let choice = 2 * place + usize::from(curtain);
                 let without = bests[usize::from(curtain)];
-                let rests = matches!(without, Some(Best::Found(c)) if c.mode != OperatingMode::Heating);
+                let rests = matches!(without, Best::Found(c) if c.mode != OperatingMode::Heating);
                 if wanted[choice] && !(heaters == Heaters::On && rests) {
-                    bests[choice] = Some(search.best(&mut known, Devices::CHOICES[choice]));
+                    bests[choice] = search.best(&mut known, Devices::CHOICES[choice]);
                 }
             }
         }
@@ -210,12 +213,12 @@ impl Search<'_, '_> {
     fn passive(&self, from: &State, curtain: bool) -> Option<State> {
         let (heat_w, slope_w_k) = self.cabin.air_unit_heat_w(&from.temperatures, &from.slopes, curtain);
         let vote = from.pmv - heat_w / slope_w_k * from.pmv_slope;
-        self.cabin.state(Target::passive(curtain), self.heaters, &self.toward(from, vote))
+        self.cabin.state(Target::passive(self.cabin.door_loss_share(curtain)), self.heaters, &self.toward(from, vote))
     }
 
     /// A guess from a state; a rough one has no slopes to follow.
     fn toward(&self, from: &State, vote: f64) -> State {
-        if from.pmv_slope > 0.0 { from.toward(vote, None) } else { *from }
+        if from.pmv_slope > 0.0 { from.along(vote) } else { *from }
     }
 
     fn heat_w(&self, state: &State, curtain: bool) -> f64 {

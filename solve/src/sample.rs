@@ -1,14 +1,15 @@
 //! The optima of one sample for all designs and comfort windows.
 
 use cabin::{
-    Cabin, Candidate, Devices, Disturbances, Heaters, OperatingMode, Operation, Optimum, Outcome, PassengerViews,
-    Vehicle,
+    Cabin, Candidate, Devices, Disturbances, OperatingMode, Operation, Optimum, Outcome, PassengerViews, Vehicle,
 };
 
 use crate::Grid;
 use crate::blocks::{Block, in_blocks};
-use crate::choice::{Best, Cheapest, Choice, Nearest, Powers, cheapest, nearest};
-use crate::states::{START_K, Seen, States, SteadyState};
+use crate::choice::{Best, Choice, Nearest, nearest};
+use crate::offer::{Cheapest, Powers, Units};
+use crate::states::{START_K, States};
+use crate::steady::{Seen, SteadyState};
 
 /// Solves all points of a sample, with buffers that are kept from sample to sample.
 #[derive(Debug)]
@@ -16,8 +17,8 @@ pub struct SampleSolver<'a> {
     vehicle: &'a Vehicle,
     views: &'a PassengerViews,
     grid: &'a Grid,
-    /// With the heaters off and on.
-    states: [States; 2],
+    states: States,
+    units: Units,
     wanted: [bool; 4],
 }
 
@@ -25,9 +26,10 @@ impl<'a> SampleSolver<'a> {
     /// A solver for a grid. `views` are the vehicle's passengers, computed once per study.
     #[must_use]
     pub fn new(vehicle: &'a Vehicle, views: &'a PassengerViews, grid: &'a Grid) -> Self {
-        let states = [Heaters::Off, Heaters::On].map(|h| States::new(h, grid.limits().len()));
-        let wanted = Devices::CHOICES.map(|choice| grid.designs().iter().any(|d| d.devices.include(choice)));
-        Self { vehicle, views, grid, states, wanted }
+        let states = States::new(grid.limits().len());
+        let units = Units::new(grid.designs());
+        let wanted = units.wanted();
+        Self { vehicle, views, grid, states, units, wanted }
     }
 
     /// Solves every design and window for one sample; `optima` has [`Grid::points`] places and is filled design by
@@ -37,20 +39,23 @@ impl<'a> SampleSolver<'a> {
         self.find_states(&cabin);
         let windows = self.grid.windows().len();
         for window in 0..windows {
-            let (bests, states) = self.bests(&cabin, window);
-            for (design, spec) in self.grid.designs().iter().enumerate() {
-                let outcome = match cheapest(spec, &bests) {
-                    Cheapest::Choice { place, powers, runner_up_w } => match (&bests[place], states[place]) {
-                        (Some(Best::Found(choice)), Some(state)) => {
-                            Outcome::Solved(operation(choice, &powers, state), runner_up_w)
-                        }
-                        _ => Outcome::NotConverged,
-                    },
+            let (bests, states) = bests(&self.states, self.grid, &cabin, window, self.wanted);
+            self.units.price(self.grid.designs(), &bests);
+            for design in 0..self.grid.designs().len() {
+                let solved = |place: usize, powers: &Powers, runner_up_w| match (&bests[place], states[place]) {
+                    (Best::Found(choice), Some(state)) => {
+                        Outcome::Solved(operation(choice, powers, state), runner_up_w)
+                    }
+                    _ => Outcome::NotConverged,
+                };
+                let optimum = &mut optima[design * windows + window];
+                (optimum.design, optimum.window) = (design, window);
+                optimum.outcome = match self.units.cheapest(design) {
+                    Cheapest::Choice { place, powers, runner_up_w } => solved(place, &powers, runner_up_w),
                     Cheapest::Limited => self.limited(&cabin, design, window, &bests),
                     Cheapest::Infeasible(reason) => Outcome::Infeasible(reason),
                     Cheapest::NotConverged => Outcome::NotConverged,
                 };
-                optima[design * windows + window] = Optimum { design, window, outcome };
             }
         }
     }
@@ -61,13 +66,13 @@ impl<'a> SampleSolver<'a> {
         let cabin = Cabin::new(self.vehicle, self.views, disturbances);
         self.find_states(&cabin);
         let design = &self.grid.designs()[design];
-        let (bests, states) = self.bests(&cabin, window);
+        let (bests, states) = bests(&self.states, self.grid, &cabin, window, self.wanted);
         std::array::from_fn(|place| {
             let devices = Devices::CHOICES[place];
             let operation = match (&bests[place], states[place]) {
-                (Some(Best::Found(choice)), Some(state)) => {
+                (Best::Found(choice), Some(state)) => {
                     let powers = choice.powers(design);
-                    (powers.unmet_heat_w == 0.0).then(|| operation(choice, &powers, state))
+                    (powers.supply.unmet_w == 0.0).then(|| operation(choice, &powers, state))
                 }
                 _ => None,
             };
@@ -76,7 +81,7 @@ impl<'a> SampleSolver<'a> {
     }
 
     /// The operation that comes nearest to a window that no choice of a design meets within its limits.
-    fn limited(&self, cabin: &Cabin<'_>, design: usize, window: usize, bests: &[Option<Best>; 4]) -> Outcome {
+    fn limited(&self, cabin: &Cabin<'_>, design: usize, window: usize, bests: &[Best; 4]) -> Outcome {
         let (design, window) = (&self.grid.designs()[design], &self.grid.windows()[window]);
         match nearest(cabin, design, bests, window, &cabin.rough_state(START_K)) {
             Some(Nearest { choice, state, powers }) => {
@@ -89,53 +94,61 @@ impl<'a> SampleSolver<'a> {
 
     fn find_states(&mut self, cabin: &Cabin<'_>) {
         let [neither, curtain, heaters, both] = self.wanted;
-        let wanted = [[neither, curtain], [heaters, both]];
-        for (states, curtains) in self.states.iter_mut().zip(wanted) {
-            if curtains.contains(&true) {
-                states.find(cabin, self.grid.limits(), curtains);
-            }
-        }
-    }
-
-    /// Every wanted choice in a window at its best, and the states of them.
-    fn bests(&self, cabin: &Cabin<'_>, window: usize) -> ([Option<Best>; 4], [Option<&SteadyState>; 4]) {
-        let (mut bests, mut states) = ([None; 4], [None; 4]);
-        for place in (0..4).filter(|place| self.wanted[*place]) {
-            let (best, state) = self.best(cabin, window, Devices::CHOICES[place]);
-            (bests[place], states[place]) = (Some(best), state);
-        }
-        (bests, states)
-    }
-
-    /// The best operation with a choice: the passive state moved into the window.
-    fn best(&self, cabin: &Cabin<'_>, window: usize, devices: Devices) -> (Best, Option<&SteadyState>) {
-        let states = &self.states[usize::from(devices.radiant_heaters)];
-        let curtain = usize::from(devices.air_curtain);
-        let (low, high) = self.grid.window_limits()[window];
-        let (state, end) = match (&states.limits[low], &states.limits[high], &states.passive[curtain]) {
-            (Seen::Lost, _, _) => return (Best::Lost, None),
-            (Seen::Settled(low), _, _) if low.air_unit_heat_w[curtain] >= 0.0 => (low, OperatingMode::Heating),
-            (_, Seen::Lost, _) => return (Best::Lost, None),
-            (_, Seen::Settled(high), _) if high.air_unit_heat_w[curtain] < 0.0 => (high, OperatingMode::Cooling),
-            (_, _, Seen::Settled(passive)) => (passive, OperatingMode::Passive),
-            (_, _, Seen::Lost | Seen::Needless) => return (Best::Lost, None),
-        };
-        let heat_w = state.air_unit_heat_w[curtain];
-        let best = Best::at(cabin, devices, end, state.temperatures.cabin_k, heat_w, state.radiant_heater_power_w);
-        (best, Some(state))
+        self.states.find(cabin, self.grid.limits(), [[neither, curtain], [heaters, both]]);
     }
 }
 
+/// Every wanted choice in a window at its best, and the states of them.
+#[inline]
+fn bests<'s>(
+    states: &'s States,
+    grid: &Grid,
+    cabin: &Cabin<'_>,
+    window: usize,
+    wanted: [bool; 4],
+) -> ([Best; 4], [Option<&'s SteadyState>; 4]) {
+    let (mut bests, mut at) = ([Best::LeftOut; 4], [None; 4]);
+    let limits = grid.window_limits()[window];
+    for place in (0..4).filter(|place| wanted[*place]) {
+        (bests[place], at[place]) = best(states, limits, cabin, Devices::CHOICES[place]);
+    }
+    (bests, at)
+}
+
+/// The best operation with a choice: the passive state moved into the window between two limits.
+#[inline]
+fn best<'s>(
+    states: &'s States,
+    (low, high): (usize, usize),
+    cabin: &Cabin<'_>,
+    devices: Devices,
+) -> (Best, Option<&'s SteadyState>) {
+    let (on, curtain) = (usize::from(devices.radiant_heaters), usize::from(devices.air_curtain));
+    let (limits, passive) = (&states.limits[on], &states.passive[on][curtain]);
+    let (state, end) = match (&limits[low], &limits[high], passive) {
+        (Seen::Lost, _, _) => return (Best::Lost, None),
+        (Seen::Settled(low), _, _) if low.air_unit_heat_w[curtain] >= 0.0 => (low, OperatingMode::Heating),
+        (_, Seen::Lost, _) => return (Best::Lost, None),
+        (_, Seen::Settled(high), _) if high.air_unit_heat_w[curtain] < 0.0 => (high, OperatingMode::Cooling),
+        (_, _, Seen::Settled(passive)) => (passive, OperatingMode::Passive),
+        (_, _, Seen::Lost | Seen::Needless) => return (Best::Lost, None),
+    };
+    let heat_w = state.air_unit_heat_w[curtain];
+    let best = Best::at(cabin, devices, end, state.temperatures.cabin_k, heat_w, state.radiant_heater_power_w);
+    (best, Some(state))
+}
+
+#[inline(always)]
 fn operation(choice: &Choice, powers: &Powers, state: &SteadyState) -> Operation {
     Operation {
         mode: choice.mode,
         devices: choice.devices,
-        air_unit_power_w: powers.air_unit_w,
-        radiant_heater_power_w: powers.radiant_heater_w,
-        air_curtain_power_w: powers.air_curtain_w,
-        backup_heater_power_w: powers.backup_w,
+        air_unit_power_w: powers.supply.power_w,
+        radiant_heater_power_w: choice.radiant_heater_power_w,
+        air_curtain_power_w: choice.air_curtain_power_w,
+        backup_heater_power_w: powers.supply.backup_w,
         air_unit_heat_w: choice.air_unit_heat_w,
-        unmet_heat_w: powers.unmet_heat_w,
+        unmet_heat_w: powers.supply.unmet_w,
         temperatures: state.temperatures,
         mean_radiant_temperature_k: state.mean_radiant_k,
         pmv: state.pmv,

@@ -1,74 +1,41 @@
-//! The cabin states that the optima of a sample can take, for one state of the radiant heaters.
+//! The cabin states that the optima of a sample can take, with the radiant heaters off and on.
 //!
 //! These are the states at the limits of the windows, at lower limits where the unit heats and at upper ones where it cools,
 //! and the passive states between them, without heat from the air unit. No other state is an optimum.
 //!
 //! The heat that a vote takes rises with the vote, so that whoever goes from neutral outward sees once where it changes its
-//! sign, and needs no limit of that kind beyond. A state is the same to the last bit whatever else the grid asks for, so that
-//! optima computed at different times fit together: the walks go over votes that are fixed, each predicted from the last two,
-//! limits are predicted from the two fixed votes around them, and passive states from the last two before them.
+//! sign, and needs no limit of that kind beyond. The walks go over votes that are fixed, each predicted from the last two;
+//! limits and passive states lie between two fixed votes and are predicted from these. That makes a state the same to the
+//! last bit whatever else the grid asks for, so that optima computed at different times fit together, and leaves states that do
+//! not wait for each other: those with the heaters off and on, and the limits between two fixed votes, are found abreast.
 
-use cabin::{Cabin, Heaters, StandardRange, State, Target, Temperatures};
+use cabin::{Cabin, Heaters, Lanes, Real, State, Target};
 
+use crate::abreast::{Found, Guess, LANES, Search};
 use crate::grid::Limit;
+use crate::steady::Seen;
 
-/// A cabin state with everything that the comparison of designs needs.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct SteadyState {
-    pub temperatures: Temperatures,
-    pub mean_radiant_k: f64,
-    pub pmv: f64,
-    pub standard_range: StandardRange,
-    /// Heat that the air unit has to bring, without and with air curtain.
-    pub air_unit_heat_w: [f64; 2],
-    /// 0 while the heaters are off.
-    pub radiant_heater_power_w: f64,
-}
+/// Limits between two fixed votes that are found abreast, each with heaters off and on.
+const LIMITS: usize = LANES / 2;
+/// The heaters of the lanes then.
+const HEATERS: [Heaters; LANES] = [Heaters::Off, Heaters::On, Heaters::Off, Heaters::On];
 
-impl SteadyState {
-    pub fn new(cabin: &Cabin<'_>, heaters: Heaters, state: &State) -> Self {
-        let t = state.temperatures;
-        let mean_radiant_k = cabin.mean_radiant_temperature_k(&t);
-        Self {
-            temperatures: t,
-            mean_radiant_k,
-            pmv: state.pmv,
-            standard_range: cabin.standard_range(t.cabin_k, mean_radiant_k, state.pmv),
-            air_unit_heat_w: heats_w(cabin, state),
-            radiant_heater_power_w: match heaters {
-                Heaters::Off => 0.0,
-                Heaters::On => cabin.radiant_heater_power_w(&t),
-            },
-        }
-    }
-}
-
-/// Heat that the air unit has to bring in W, without and with air curtain.
-fn heats_w(cabin: &Cabin<'_>, state: &State) -> [f64; 2] {
-    [false, true].map(|curtain| cabin.air_unit_heat_w(&state.temperatures, &state.slopes, curtain).0)
-}
-
-/// What is known of a state that might be an optimum.
-#[derive(Debug, Clone, Copy)]
-pub(crate) enum Seen {
-    /// It is none: the unit is not needed there.
-    Needless,
-    /// The iteration did not settle.
-    Lost,
-    /// The state.
-    Settled(SteadyState),
-}
-
-/// The states for one state of the heaters, kept from sample to sample.
+/// The states of a sample, kept from sample to sample. The first index is 0 with the heaters off, 1 with them on.
 #[derive(Debug, Clone)]
 pub(crate) struct States {
-    heaters: Heaters,
     /// Without and with air curtain.
-    pub passive: [Seen; 2],
+    pub passive: [[Seen; 2]; 2],
     /// At the grid's limits.
-    pub limits: Vec<Seen>,
-    /// Of the walk at work: its states at the fixed votes from neutral outward, those that have settled.
-    fixed: Vec<State>,
+    pub limits: [Vec<Seen>; 2],
+    /// Of the walk at work: its states at the fixed votes from neutral outward.
+    fixed: Vec<Fixed>,
+}
+
+/// States at a fixed vote, with heaters off and on.
+#[derive(Debug, Clone, Copy)]
+struct Fixed {
+    vote: f64,
+    found: Found,
 }
 
 /// Which way a walk goes.
@@ -81,127 +48,203 @@ enum Way {
 }
 
 impl States {
-    pub fn new(heaters: Heaters, limits: usize) -> Self {
-        Self { heaters, passive: [Seen::Needless; 2], limits: vec![Seen::Needless; limits], fixed: Vec::new() }
+    pub fn new(limits: usize) -> Self {
+        let needless = || vec![Seen::Needless; limits];
+        Self { passive: [[Seen::Needless; 2]; 2], limits: [needless(), needless()], fixed: Vec::new() }
     }
 
-    /// Finds the states of a sample, for designs without and with air curtain as far as they are wanted.
-    pub fn find(&mut self, cabin: &Cabin<'_>, limits: &[Limit], curtains: [bool; 2]) {
-        let Some(neutral) = cabin.state(Target::Vote(0.0), self.heaters, &cabin.rough_state(START_K)) else {
-            self.passive.fill(Seen::Lost);
-            self.limits.fill(Seen::Lost);
-            return;
-        };
-        self.passive.fill(Seen::Needless);
-        self.limits.fill(Seen::Needless);
+    /// Finds the states of a sample for the heaters off and on, and designs without and with air curtain, as far as they are
+    /// wanted.
+    pub fn find(&mut self, cabin: &Cabin<'_>, limits: &[Limit], wanted: [[bool; 2]; 2]) {
+        self.passive = [[Seen::Needless; 2]; 2];
+        for seen in &mut self.limits {
+            seen.fill(Seen::Needless);
+        }
+        let neutral = Fixed::new(cabin, 0.0, Guess::Is(&State::of(&[cabin.rough_state(START_K); LANES])));
         let first_warm = limits.partition_point(|l| l.pmv < 0.0);
-        self.walk(cabin, limits, curtains, &neutral, Way::Colder, (0..first_warm).rev());
-        self.walk(cabin, limits, curtains, &neutral, Way::Warmer, first_warm..limits.len());
+        self.walk(cabin, Walk { limits, wanted, way: Way::Colder }, &neutral, (0..first_warm).rev());
+        self.walk(cabin, Walk { limits, wanted, way: Way::Warmer }, &neutral, first_warm..limits.len());
     }
 
-    /// From neutral outward in fixed steps of the vote, as far as limits need it, and to the passive states on that way.
+    /// From neutral outward in fixed steps of the vote as far as limits need it, and to all limits and passive states on that
+    /// way.
     fn walk(
         &mut self,
         cabin: &Cabin<'_>,
-        limits: &[Limit],
-        curtains: [bool; 2],
-        neutral: &State,
-        way: Way,
-        places: impl Iterator<Item = usize>,
+        walk: Walk<'_>,
+        neutral: &Fixed,
+        places: impl Iterator<Item = usize> + Clone,
     ) {
         self.fixed.clear();
         self.fixed.push(*neutral);
-        let mut needed = way.needed(heats_w(cabin, neutral));
-        let neutral_needed = needed;
-        // What cannot be settled on the way stops the walk.
-        let mut lost = false;
-        for i in places {
-            let limit = &limits[i];
-            let wanted = [0, 1].map(|c| curtains[c] && needed[c]);
-            let (ends_walk, other) = match way {
-                Way::Colder => (limit.lower, limit.upper),
-                Way::Warmer => (limit.upper, limit.lower),
+        let mut places = places.peekable();
+        while let Some(&place) = places.peek() {
+            let after = walk.after(place);
+            while self.fixed.len() <= after {
+                let anyway = places.clone().any(|place| walk.is_of_other_end(place));
+                if !(anyway || walk.needed(&self.fixed[self.fixed.len() - 1]).as_flattened().contains(&true)) {
+                    break;
+                }
+                self.step(cabin, walk.way);
+            }
+            if self.fixed.len() <= after {
+                break;
+            }
+            let mut some = [place; LIMITS];
+            let mut count = 0;
+            while let Some(place) = places.next_if(|&place| count < LIMITS && walk.after(place) == after) {
+                some[count] = place;
+                count += 1;
+            }
+            self.between(cabin, &walk, after, &some[..count]);
+        }
+        self.passive_states(cabin, &walk);
+    }
+
+    /// To the next fixed vote.
+    fn step(&mut self, cabin: &Cabin<'_>, way: Way) {
+        let vote = self.fixed.len() as f64 * if way == Way::Warmer { FIXED_STEP } else { -FIXED_STEP };
+        let guess = match self.fixed.as_slice() {
+            [.., before, last] => Guess::Beyond(&last.found.state, &before.found.state),
+            [last] => Guess::Along(&last.found.state),
+            [] => return,
+        };
+        let fixed = Fixed::new(cabin, vote, guess);
+        self.fixed.push(fixed);
+    }
+
+    /// The states at some limits that lie between two fixed votes, or at the second of them.
+    fn between(&mut self, cabin: &Cabin<'_>, walk: &Walk<'_>, after: usize, places: &[usize]) {
+        let last = &self.fixed[after];
+        let before = &self.fixed[after.saturating_sub(1)];
+        let needed = walk.needed(before).map(|needed| needed.contains(&true));
+        let votes: [f64; LIMITS] = std::array::from_fn(|n| walk.limits[places[n.min(places.len() - 1)]].pmv);
+        let found: Option<Found> = votes.iter().any(|vote| *vote != last.vote).then(|| {
+            let search = Search {
+                cabin,
+                target: Target::Vote(Lanes(std::array::from_fn(|lane| votes[lane / 2]))),
+                heaters: HEATERS,
+                guess: Guess::Beyond(&last.found.state, &before.found.state),
             };
-            if !(other || ends_walk && wanted.contains(&true)) {
-                continue;
+            search.run()
+        });
+        for (n, place) in places.iter().enumerate() {
+            for (on, limits) in self.limits.iter_mut().enumerate() {
+                if !(walk.is_of_other_end(*place) || needed[on]) {
+                    continue;
+                }
+                let (at, lane) = match &found {
+                    Some(found) if votes[n] != last.vote => (found, 2 * n + on),
+                    _ => (&last.found, on),
+                };
+                limits[*place] = match before.found.settles[on] && last.found.settles[on] {
+                    true => at.seen(cabin, lane),
+                    false => Seen::Lost,
+                };
             }
-            lost = lost || !self.reach(cabin, way, limit.pmv);
-            self.limits[i] = if lost { Seen::Lost } else { self.limit(cabin, limit.pmv) };
-            if let Seen::Settled(state) = &self.limits[i] {
-                let here = way.needed(state.air_unit_heat_w);
-                needed = [0, 1].map(|c| needed[c] && here[c]);
+        }
+    }
+
+    /// The passive states on the way: the unit is needed at neutral and no more at the last fixed vote.
+    fn passive_states(&mut self, cabin: &Cabin<'_>, walk: &Walk<'_>) {
+        let (Some(first), Some(last)) = (self.fixed.first(), self.fixed.last()) else { return };
+        let (at_first, at_last) = (walk.needed(first), walk.needed(last));
+        let mut wanted = [(0, 0); LANES];
+        let mut count = 0;
+        for (on, curtain) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+            if at_first[on][curtain] && !at_last[on][curtain] {
+                wanted[count] = (on, curtain);
+                count += 1;
             }
         }
-        for curtain in [0, 1] {
-            // The unit is needed at neutral and no more at the last limit: the passive state lies between.
-            if curtains[curtain] && neutral_needed[curtain] && !needed[curtain] {
-                self.passive[curtain] = self.passive_state(cabin, way, curtain == 1);
-            }
+        if count == 0 {
+            return;
+        }
+        // Lanes that are left over find the first one once more.
+        let mut guesses = [self.passive_guess(walk, wanted[0]); LANES];
+        for lane in 1..count {
+            guesses[lane] = self.passive_guess(walk, wanted[lane]);
+        }
+        let first = wanted[0];
+        wanted[count..].fill(first);
+        let search = Search {
+            cabin,
+            target: Target::passive(Lanes(wanted.map(|(_, curtain)| cabin.door_loss_share(curtain == 1)))),
+            heaters: wanted.map(|(on, _)| HEATERS[on]),
+            guess: Guess::Is(&State::of(&guesses)),
+        };
+        let found = search.run();
+        for (lane, (on, curtain)) in wanted.into_iter().enumerate() {
+            self.passive[on][curtain] = found.seen(cabin, lane);
         }
     }
 
-    /// Walks on to the first fixed vote that is not before a vote; `false` where that does not settle.
-    fn reach(&mut self, cabin: &Cabin<'_>, way: Way, vote: f64) -> bool {
-        let step = if way == Way::Warmer { FIXED_STEP } else { -FIXED_STEP };
-        let farthest = (vote / step).ceil();
-        while ((self.fixed.len() - 1) as f64) < farthest {
-            let next = self.fixed.len() as f64 * step;
-            let (before, last) = self.fixed_before(self.fixed.len());
-            let mut state = last.toward(next, before);
-            if !cabin.settle_state(Target::Vote(next), self.heaters, &mut state) {
-                return false;
-            }
-            self.fixed.push(state);
-        }
-        true
-    }
-
-    /// The state at a vote between the fixed ones.
-    fn limit(&self, cabin: &Cabin<'_>, vote: f64) -> Seen {
-        let after = (vote.abs() / FIXED_STEP).ceil();
-        if vote.abs() == after * FIXED_STEP {
-            return Seen::Settled(SteadyState::new(cabin, self.heaters, &self.fixed[after as usize]));
-        }
-        let (before, last) = self.fixed_before(after as usize + 1);
-        self.settled(cabin, Target::Vote(vote), last.toward(vote, before))
-    }
-
-    /// The last two of the first so many fixed states.
-    fn fixed_before(&self, count: usize) -> (Option<&State>, &State) {
-        (count.checked_sub(2).map(|place| &self.fixed[place]), &self.fixed[count - 1])
-    }
-
-    fn settled(&self, cabin: &Cabin<'_>, target: Target, mut state: State) -> Seen {
-        match cabin.settle_state(target, self.heaters, &mut state) {
-            true => Seen::Settled(SteadyState::new(cabin, self.heaters, &state)),
-            false => Seen::Lost,
-        }
-    }
-
-    /// The passive state, from the last fixed vote at which the unit is needed.
-    fn passive_state(&self, cabin: &Cabin<'_>, way: Way, curtain: bool) -> Seen {
-        let heat = |state: &State| cabin.air_unit_heat_w(&state.temperatures, &state.slopes, curtain);
-        let from = self.fixed.partition_point(|state| way.needed([heat(state).0; 2])[0]).max(1) - 1;
-        let (before, state) = self.fixed_before(from + 1);
-        let (heat_w, slope_w_k) = heat(state);
-        let vote = state.pmv - heat_w / slope_w_k * state.pmv_slope;
-        self.settled(cabin, Target::passive(curtain), state.toward(vote, before))
+    /// Between the last fixed vote at which the unit is needed and the next one.
+    fn passive_guess(&self, walk: &Walk<'_>, (on, curtain): (usize, usize)) -> State {
+        let after = self.fixed.partition_point(|fixed| walk.needed(fixed)[on][curtain]);
+        let (before, last) = (&self.fixed[after - 1], &self.fixed[after]);
+        let (state, other) = (last.found.state.lane(on), before.found.state.lane(on));
+        // Hermite's cubic through the votes over the heat, at no heat.
+        let of = |fixed: &Fixed, state: &State| {
+            let (heat_w, slope_w_k) = &fixed.found.air_unit_heat_w[curtain];
+            (heat_w.0[on], state.pmv_slope / slope_w_k.0[on])
+        };
+        let ((heat0_w, slope0), (heat1_w, slope1)) = (of(before, &other), of(last, &state));
+        let width_w = heat1_w - heat0_w;
+        let (s, rest) = (-heat0_w / width_w, heat1_w / width_w);
+        let vote = rest * rest * ((1.0 + 2.0 * s) * before.vote + s * width_w * slope0)
+            + s * s * ((1.0 + 2.0 * rest) * last.vote - rest * width_w * slope1);
+        state.beyond(vote, &other)
     }
 }
 
-impl Way {
-    /// Whether the unit is needed where it has to bring these heats, without and with air curtain.
-    fn needed(self, heats_w: [f64; 2]) -> [bool; 2] {
-        heats_w.map(|heat_w| match self {
-            // None at neutral is the passive state, which the colder walk finds.
-            Self::Colder => heat_w >= 0.0,
-            Self::Warmer => heat_w < 0.0,
+impl Fixed {
+    fn new(cabin: &Cabin<'_>, vote: f64, guess: Guess<'_>) -> Self {
+        let search = Search { cabin, target: Target::Vote(Lanes::splat(vote)), heaters: HEATERS, guess };
+        Self { vote, found: search.run() }
+    }
+}
+
+/// What a walk is to find.
+#[derive(Debug, Clone, Copy)]
+struct Walk<'l> {
+    limits: &'l [Limit],
+    wanted: [[bool; 2]; 2],
+    way: Way,
+}
+
+impl Walk<'_> {
+    /// Whether windows end there that begin beyond neutral, so that its state is asked for in any case.
+    fn is_of_other_end(&self, place: usize) -> bool {
+        match self.way {
+            Way::Colder => self.limits[place].upper,
+            Way::Warmer => self.limits[place].lower,
+        }
+    }
+
+    /// The first fixed vote that is not before a limit, by its place from neutral.
+    fn after(&self, place: usize) -> usize {
+        (self.limits[place].pmv.abs() / FIXED_STEP).ceil() as usize
+    }
+
+    /// Whether the unit is needed at a fixed vote, or might be for all that is known.
+    fn needed(&self, fixed: &Fixed) -> [[bool; 2]; 2] {
+        std::array::from_fn(|on| {
+            std::array::from_fn(|curtain| {
+                let heat_w = fixed.found.air_unit_heat_w[curtain].0.0[on];
+                let needed = match self.way {
+                    // None at neutral is the passive state, which the colder walk finds.
+                    Way::Colder => heat_w >= 0.0,
+                    Way::Warmer => heat_w < 0.0,
+                };
+                self.wanted[on][curtain] && (needed || !fixed.found.settles[on])
+            })
         })
     }
 }
 
 /// Distance of the fixed votes.
-const FIXED_STEP: f64 = 0.5;
+const FIXED_STEP: f64 = 0.375;
 
 /// Where the search for the first state starts, in K.
 pub(crate) const START_K: f64 = 295.0;

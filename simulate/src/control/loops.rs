@@ -259,7 +259,7 @@ mod tests {
         };
         let limits = PowerLimits { heating_w: 12_000.0, cooling_w: 12_000.0, radiant_heaters_w: 0.0 };
         let mut loops = Loops::new(&Dynamics::default(), [limits; LANES]);
-        let mut cabin = Lanes([293.0; LANES]);
+        let mut cabin = cabin::Lanes([293.0; LANES]);
         (0..LANES).for_each(|lane| loops.begin(lane, setting, cabin));
         let (mut seed, mut switches) = (1, 0);
         let mut since = [0_u32; LANES];
