@@ -3,7 +3,7 @@
 use cabin::{Operation, PassengerViews};
 use ingest::sample::Sample;
 use rayon::prelude::*;
-use simulate::{LANES, Replay, Segment, Summary, Variant};
+use simulate::{Replay, Segment, Summary, Variant, simulate_distinct};
 use std::collections::BTreeSet;
 use store::{Driven, RecordedStage, SimulationId, SimulationRow, StageRecord, Store};
 use study::Study;
@@ -76,7 +76,7 @@ pub(crate) fn simulate(
         MISSIONS_A_THREAD,
         progress,
         |store, missions| basis.jobs(store, missions, &missing),
-        |jobs| jobs.par_iter().flat_map_iter(|job| basis.run(job, progress)).collect(),
+        |jobs| basis.run(jobs, progress),
         |store, rows: &[SimulationRow]| {
             simulated += rows.iter().map(|r| r.result.as_ref().map_or(0, Vec::len)).sum::<usize>();
             Ok(store.put_simulations(&basis.grid, rows)?)
@@ -142,8 +142,14 @@ impl SimulationBasis<'_> {
         Ok(Some(Job { samples, loads: store.loads(&samples[0].segment.source_path)?, points }))
     }
 
-    /// Simulates a mission in all the ways that are wanted, up to where somebody asks to stop: each row is whole by itself.
-    fn run(&self, job: &Job<'_>, progress: &dyn Progress) -> Vec<SimulationRow> {
+    /// Simulates missions, up to where somebody asks to stop: each row is whole by itself.
+    fn run(&self, jobs: &[Job<'_>], progress: &dyn Progress) -> Vec<SimulationRow> {
+        let rows = |job: &Job<'_>| if progress.stop() { Vec::new() } else { self.rows(job) };
+        jobs.par_iter().flat_map_iter(rows).collect()
+    }
+
+    /// A mission in all the ways that are wanted.
+    fn rows(&self, job: &Job<'_>) -> Vec<SimulationRow> {
         let in_time = MissionInTime::new(self.study, &self.views, &self.surroundings, job.samples, &job.loads);
         let first = &job.samples[0];
         let ambient_k =
@@ -156,21 +162,14 @@ impl SimulationBasis<'_> {
             ambient_k,
             result,
         };
-        let rows = |points: &[Point]| {
-            if progress.stop() {
-                return Vec::new();
-            }
-            let results = match &in_time {
-                Ok(in_time) => self.replays(in_time, points),
-                Err(reason) => vec![Err(reason.clone()); points.len()],
-            };
-            points.iter().zip(results).map(row).collect()
+        let results = match &in_time {
+            Ok(in_time) => self.replays(in_time, &job.points),
+            Err(reason) => vec![Err(reason.clone()); job.points.len()],
         };
-        // A night has one mission, whose points then share the cores.
-        job.points.par_chunks(LANES / Replay::ALL.len()).flat_map_iter(rows).collect()
+        job.points.iter().zip(results).map(row).collect()
     }
 
-    /// Some points of a mission in all replays, abreast.
+    /// Points of a mission in all replays.
     fn replays(&self, in_time: &MissionInTime<'_>, points: &[Point]) -> Vec<Replays> {
         let study = self.study;
         let segments = |point: &Point| {
@@ -183,7 +182,7 @@ impl SimulationBasis<'_> {
             let design = &study.grid.designs()[point.id.design];
             variants.extend(segments.iter().flat_map(|segments| Replay::ALL.map(|replay| replay.of(design, segments))));
         }
-        let Some(summaries) = simulate::simulate(&in_time.mission(), &study.dynamics, &variants) else {
+        let Some(summaries) = simulate_distinct(&in_time.mission(), &study.dynamics, &variants) else {
             return vec![Err("no weather up to its end".to_owned()); points.len()];
         };
         let mut of_points = summaries.chunks(Replay::ALL.len());

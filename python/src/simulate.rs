@@ -1,6 +1,6 @@
 //! A mission second by second, with the operation that the optima prescribe.
 
-use ::simulate::{LANES, Mission, Replay, Segment, Summary, Variant};
+use ::simulate::{Mission, Replay, Segment, Summary, Variant, simulate_distinct};
 use arrow_array::{ArrayRef, Float64Array, Int64Array, StringArray};
 use cabin::{Cabin, Disturbances, LoadChange, Operation, Optimum, PassengerViews};
 use pyo3::prelude::*;
@@ -157,10 +157,9 @@ fn driven(
         let design = &study.grid.designs()[point / windows.len()];
         variants.extend(segments.iter().flat_map(|segments| Replay::ALL.map(|replay| replay.of(design, segments))));
     }
-    let abreast = |some: &[Variant<'_>]| ::simulate::simulate(mission, &study.dynamics, some);
-    let summaries: Option<Vec<Vec<Summary>>> = variants.par_chunks(LANES).map(abreast).collect();
+    let summaries = simulate_distinct(mission, &study.dynamics, &variants);
     let summaries = summaries.ok_or_else(|| InputError::new_err("minutes: they end before the last segment"))?;
-    let mut summaries = summaries.into_iter().flatten();
+    let mut summaries = summaries.into_iter();
     let mut rows: Vec<(usize, Replay, Result<Summary, &String>)> = Vec::new();
     for (point, optima) in optima.iter().enumerate() {
         for replay in Replay::ALL {

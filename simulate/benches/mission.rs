@@ -3,12 +3,13 @@
 
 use cabin::{PassengerViews, Vehicle};
 use divan::{Bencher, counter::ItemsCount};
-use simulate::{Dynamics, Mission, Variant, simulate};
+use simulate::{Dynamics, Mission, Variant, simulate, simulate_distinct};
 use testing::{TestMission, paper_designs, simulate_finely};
 
 const HOURS: usize = 10;
-/// Hours of the year with which a winter's and a summer's day begin.
+/// Hours of the year with which a day of the season begins.
 const WINTER: usize = 30;
+const SPRING: usize = 2100;
 const SUMMER: usize = 3700;
 
 fn main() {
@@ -40,6 +41,16 @@ fn winter_in_100_variants(bencher: Bencher) {
 #[divan::bench(sample_count = 10)]
 fn summer_in_100_variants(bencher: Bencher) {
     all(bencher, SUMMER);
+}
+
+/// The same on all cores, those driven once that cannot come out differently.
+#[divan::bench(sample_count = 10, args = [("winter", WINTER), ("spring", SPRING), ("summer", SUMMER)])]
+fn distinct_of_100_variants(bencher: Bencher, (_, first): (&str, usize)) {
+    with_day(first, |mission, variants| {
+        bencher
+            .counter(ItemsCount::new(3600 * HOURS * variants.len()))
+            .bench_local(|| simulate_distinct(divan::black_box(mission), &Dynamics::default(), variants));
+    });
 }
 
 #[divan::bench(sample_count = 3)]

@@ -12,7 +12,7 @@ use crate::judge::Judge;
 use crate::lanes::{LANES, Lanes};
 use crate::model::{AirUnits, Rates, Second, Vector, temperatures};
 use crate::summary::Sums;
-use crate::{BusState, Commands, Dynamics, Instant, Mission, Start, Summary, Variant, depot_temperature_k};
+use crate::{BusState, Commands, Dynamics, Instant, Mission, Start, Summary, Used, Variant, depot_temperature_k};
 
 /// Whoever sees every second of every variant, by its place.
 pub type Record<'r> = dyn FnMut(usize, &Instant) + 'r;
@@ -102,13 +102,14 @@ struct End {
     x: Vector,
     sums: Sums,
     max_abs_pmv_15min: [Option<f64>; LANES],
+    used: [Used; LANES],
 }
 
 impl End {
     fn summary(&self, lane: usize, mission: &Mission<'_, '_>, variant: &Variant<'_>, judge: &Judge) -> Summary {
         let seconds = mission.segments as u32 * mission.segment_s;
         let votes = (self.max_abs_pmv_15min[lane], judge.rides(lane, variant.windows.len()));
-        self.sums.summary(lane, seconds, variant.segments, votes, BusState::of(&self.x, lane))
+        self.sums.summary(lane, seconds, variant.segments, votes, (self.used[lane], BusState::of(&self.x, lane)))
     }
 }
 
@@ -204,7 +205,12 @@ impl<'a, 'm, 'v> Drive<'a, 'm, 'v> {
                 tell(from_s, &past, [&votes, &means], record);
             }
         }
-        End { x: self.x, sums: self.sums, max_abs_pmv_15min: std::array::from_fn(|lane| trailing.largest(lane)) }
+        End {
+            x: self.x,
+            sums: self.sums,
+            max_abs_pmv_15min: std::array::from_fn(|lane| trailing.largest(lane)),
+            used: *self.loops.used(),
+        }
     }
 
     /// A minute begins, and with some of them a segment.

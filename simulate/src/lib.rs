@@ -1,12 +1,14 @@
 //! The bus in time: the dynamic model, and the controllers that drive it.
 //!
 //! The five balances (paper, eq. `odes`) with their heat capacities, and the first-order lag of the air unit (eq. `vcc-ode`).
-//! [`simulate`](fn@simulate) drives a mission in many [`Variant`]s at once, eight abreast; a [`Scenario`] says where it starts
+//! [`simulate`](fn@simulate) drives a mission in many [`Variant`]s at once, eight abreast, [`simulate_distinct`] those that can
+//! come out differently; a [`Scenario`] says where it starts
 //! and what limits hold, a law of [`control`] prescribes setpoints and thresholds. The paper's validation (section "Validation
 //! of the Steady-State Assumption") and three less bound ways to drive are [`Replay`]s of the steady-state optima.
 //!
 //! Pure functions of a mission's loads and weather: no files, no clock, no database, and nothing allocated per second.
 
+mod alike;
 mod average;
 mod constants;
 pub mod control;
@@ -22,6 +24,7 @@ mod segment;
 mod summary;
 mod trace;
 
+pub use alike::{Used, simulate_distinct};
 pub use constants::{Dynamics, DynamicsError};
 pub use drive::{Record, simulate, simulate_with};
 pub use instant::Instant;

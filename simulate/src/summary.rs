@@ -5,7 +5,7 @@ use cabin::Real;
 
 use crate::control::Demand;
 use crate::lanes::{LANES, Lanes};
-use crate::{BusState, Rides, Segment};
+use crate::{BusState, Rides, Segment, Used};
 
 /// What a simulation comes to, beside what the steady-state optima foresee.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,8 +26,29 @@ pub struct Summary {
     pub tracking_error_k: f64,
     /// How its passengers fare.
     pub rides: Rides,
+    /// What it has used of its design.
+    pub used: Used,
     /// Temperatures and air unit at the end.
     pub end: BusState,
+}
+
+impl Summary {
+    /// The same drive, beside other optima.
+    pub(crate) fn beside(&self, segments: &[Segment]) -> Self {
+        Self {
+            static_mean_hvac_power_w: mean_power_w(segments),
+            static_max_abs_pmv: max_abs_vote(segments),
+            ..self.clone()
+        }
+    }
+}
+
+fn mean_power_w(segments: &[Segment]) -> f64 {
+    segments.iter().map(|s| s.optimum.hvac_power_w()).sum::<f64>() / segments.len() as f64
+}
+
+fn max_abs_vote(segments: &[Segment]) -> f64 {
+    segments.iter().map(|s| s.optimum.pmv.abs()).fold(0.0, f64::max)
 }
 
 /// What is added up over a mission.
@@ -85,20 +106,20 @@ impl Sums {
         seconds: u32,
         segments: &[Segment],
         (max_abs_pmv_15min, rides): (Option<f64>, Rides),
-        end: BusState,
+        (used, end): (Used, BusState),
     ) -> Summary {
         debug_assert!(lane < LANES);
         let of = |sum: &Lanes| sum.0[lane];
-        let optima = || segments.iter().map(|s| &s.optimum);
         Summary {
             seconds,
             mean_hvac_power_w: of(&self.energy_j) / f64::from(seconds),
-            static_mean_hvac_power_w: optima().map(|o| o.hvac_power_w()).sum::<f64>() / segments.len() as f64,
+            static_mean_hvac_power_w: mean_power_w(segments),
             max_abs_pmv_15min,
-            static_max_abs_pmv: optima().map(|o| o.pmv.abs()).fold(0.0, f64::max),
+            static_max_abs_pmv: max_abs_vote(segments),
             saturated_fraction: of(&self.saturated_s) / f64::from(seconds),
             tracking_error_k: (of(&self.square_error) / of(&self.tracked_s).max(1.0)).sqrt(),
             rides,
+            used: Used { limit: of(&self.saturated_s) > 0.0, ..used },
             end,
         }
     }

@@ -7,7 +7,7 @@ use cabin::{
 use setpoints::{Curve, published};
 use simulate::control::{AirCurtain, CausalController, Law};
 use simulate::{BusState, Commands, Dynamics, Instant, Mission, Replay, Segment, Summary, simulate, simulate_with};
-use simulate::{Limits, Scenario, Start, Variant};
+use simulate::{Limits, Scenario, Start, Variant, simulate_distinct};
 use testing::{TestMission, day, design, optimum, paper_designs, simulate_finely, step};
 
 fn segment(vehicle: &Vehicle, views: &PassengerViews, o: Operation, d: &Disturbances, limit: f64) -> Segment {
@@ -219,6 +219,35 @@ fn prop_a_variant_comes_out_the_same_in_whatever_company() {
     }
     let fine = simulate_finely(&mission, &Dynamics::default(), &variants[20], 20, |_| ());
     assert!((fine.mean_hvac_power_w - together[20].mean_hvac_power_w).abs() < 0.5, "{fine:?}");
+}
+
+#[test]
+fn prop_variants_that_are_driven_once_come_out_as_each_by_itself() {
+    let vehicle = Vehicle::default();
+    let views = PassengerViews::new(&vehicle);
+    let designs = paper_designs();
+    let (mut held_back, mut at_rest) = (0, 0);
+    for first in [30, 2100, 3700, 6600] {
+        let test = TestMission::new(&vehicle, &views, &designs, first, 4);
+        let mission = test.mission();
+        let mut variants = test.variants(&designs);
+        let controllers: Vec<CausalController> =
+            published().iter().take(3).map(CausalController::published).chain([causal()]).collect();
+        let windows = [0.5, 1.0].map(|limit| ComfortWindow::symmetric(limit).expect("valid"));
+        for (law, design) in controllers.iter().map(Law::Causal).flat_map(|law| designs.iter().map(move |d| (law, d))) {
+            let depot = Replay::PAPER.of(design, variants[0].segments);
+            variants.push(Variant { law, windows: &windows, ..depot });
+        }
+        // Limits that some of them come up to.
+        for dynamics in [Dynamics::default(), Dynamics { heat_pump_limit_w: 3000.0, ..Dynamics::default() }] {
+            let each = simulate(&mission, &dynamics, &variants).expect("it has segments");
+            let distinct = simulate_distinct(&mission, &dynamics, &variants).expect("it has segments");
+            assert_eq!(each, distinct, "hour {first}");
+            held_back += each.iter().filter(|s| s.used.limit).count();
+            at_rest += each.iter().filter(|s| !(s.used.heating || s.used.cooling)).count();
+        }
+    }
+    assert!(held_back > 100 && at_rest > 20, "{held_back} {at_rest}");
 }
 
 /// A controller whose setpoints and thresholds all matter on some day of the year.

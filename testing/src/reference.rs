@@ -5,7 +5,7 @@
 use cabin::{Cabin, Design, Heating, OperatingMode, Operation, Temperatures, celsius, kelvin};
 use simulate::control::{AirCurtain, Law};
 use simulate::{
-    BusState, Commands, Dynamics, Instant, Limits, Mission, Rides, Segment, Start, Summary, Variant,
+    BusState, Commands, Dynamics, Instant, Limits, Mission, Rides, Segment, Start, Summary, Used, Variant,
     depot_temperature_k,
 };
 
@@ -244,6 +244,7 @@ pub fn simulate_finely(
     let mut votes: Vec<f64> = Vec::new();
     let (mut energy_j, mut held_back_s, mut tracked_s, mut square_error) = (0.0, 0, 0, 0.0);
     let mut max_abs: Option<f64> = None;
+    let mut used = Used::default();
     let (mut passenger_s, mut abs_vote, mut outside_s) = (0.0, 0.0, vec![0.0; variant.windows.len()]);
     for second in 0..seconds {
         while let Some(load) = loads.next_if(|l| l.second <= second) {
@@ -274,6 +275,9 @@ pub fn simulate_finely(
         };
         energy_j += instant.hvac_power_w();
         held_back_s += u32::from(held_back);
+        used.heating |= controller.mode == OperatingMode::Heating;
+        used.cooling |= controller.mode == OperatingMode::Cooling;
+        used.limit |= held_back;
         passenger_s += passengers;
         abs_vote += passengers * pmv_15min.abs();
         for (outside_s, window) in outside_s.iter_mut().zip(variant.windows) {
@@ -308,6 +312,7 @@ pub fn simulate_finely(
             mean_abs_pmv: (passenger_s > 0.0).then(|| abs_vote / passenger_s),
             hours_outside: outside_s.iter().map(|s| s / 3600.0).collect(),
         },
+        used,
         end: now,
     }
 }

@@ -4,7 +4,7 @@ use cabin::{ComfortWindow, Operation};
 use ingest::sample::Sample;
 use rayon::prelude::*;
 use simulate::control::Law;
-use simulate::{LANES, Limits, Scenario, Segment, Start, Summary, Variant};
+use simulate::{Limits, Scenario, Segment, Start, Summary, Variant, simulate_distinct};
 use std::collections::BTreeMap;
 use store::{ControlId, ControlRow, ControlledMission, Store};
 use study::keys;
@@ -178,10 +178,7 @@ impl Driving<'_> {
         };
         let variant = |driven| variant(study, design, driven, &segments[&all[0]], &windows[judges(driven)]);
         let variants: Vec<Variant<'_>> = driven.iter().map(variant).collect();
-        let mission = in_time.mission();
-        // A night has one mission, whose controllers then share the cores.
-        let abreast = |some: &[Variant<'_>]| simulate::simulate(&mission, &study.dynamics, some);
-        let summaries: Option<Vec<Vec<Summary>>> = variants.par_chunks(LANES).map(abreast).collect();
+        let summaries = simulate_distinct(&in_time.mission(), &study.dynamics, &variants);
         let summaries = summaries.ok_or_else(|| "no weather up to its end".to_owned())?;
         let judged = |(driven, s): (&Driven, &Summary)| -> Vec<ControlledMission> {
             let by = |(place, window): (usize, &usize)| ControlledMission {
@@ -207,7 +204,7 @@ impl Driving<'_> {
             let judging = all[judges(driven)].iter().enumerate();
             judging.filter(|(_, window)| driven.window.is_none_or(|own| own == **window)).map(by).collect()
         };
-        Ok(driven.iter().zip(summaries.iter().flatten()).flat_map(judged).collect())
+        Ok(driven.iter().zip(&summaries).flat_map(judged).collect())
     }
 }
 

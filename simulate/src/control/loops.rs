@@ -7,7 +7,7 @@ use cabin::{OperatingMode, Operation, Real};
 
 use super::{AirCurtain, Setting};
 use crate::lanes::{LANES, Lanes};
-use crate::{Dynamics, PowerLimits};
+use crate::{Dynamics, PowerLimits, Used};
 
 /// All loops with their states. What follows from mode and setting is ready as numbers of the lanes.
 #[derive(Debug, Clone)]
@@ -16,6 +16,8 @@ pub(crate) struct Loops {
     limits: [PowerLimits; LANES],
     settings: [Setting; LANES],
     modes: [OperatingMode; LANES],
+    /// Modes that there have been.
+    used: [Used; LANES],
     /// 1 while heating, −1 while cooling, 0 otherwise.
     sign: Lanes,
     setpoint_k: Lanes,
@@ -80,6 +82,7 @@ impl Loops {
             limits,
             settings: [OFF; LANES],
             modes: [OperatingMode::Passive; LANES],
+            used: [Used::default(); LANES],
             sign: Lanes::ZERO,
             setpoint_k: Lanes::ZERO,
             start_below_k: Lanes::ZERO,
@@ -125,6 +128,10 @@ impl Loops {
 
     pub fn modes(&self) -> &[OperatingMode; LANES] {
         &self.modes
+    }
+
+    pub fn used(&self) -> &[Used; LANES] {
+        &self.used
     }
 
     /// Whether any lane may not stay in its mode.
@@ -176,6 +183,8 @@ impl Loops {
     /// Makes ready what follows from mode and setting.
     fn refresh(&mut self, lane: usize) {
         let (s, limits) = (&self.settings[lane], &self.limits[lane]);
+        self.used[lane].heating |= self.modes[lane] == OperatingMode::Heating;
+        self.used[lane].cooling |= self.modes[lane] == OperatingMode::Cooling;
         let never = [f64::NEG_INFINITY, f64::INFINITY];
         let (sign, setpoint_k, [low_w, high_w], start_k) = match self.modes[lane] {
             OperatingMode::Heating => (1.0, s.heating_k, [0.0, limits.heating_w], never),
