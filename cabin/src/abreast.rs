@@ -6,7 +6,8 @@ use crate::{Lanes, Real, Slopes, State, Target, Temperatures};
 impl<R: Copy> State<R> {
     /// What a function makes of each number.
     #[inline(always)]
-    pub(crate) fn map<S>(&self, f: impl Fn(R) -> S) -> State<S> {
+    #[must_use]
+    pub fn map<S>(&self, f: impl Fn(R) -> S) -> State<S> {
         self.zip(self, |x, _| f(x))
     }
 

@@ -2,6 +2,8 @@
 
 use cabin::{ComfortWindow, Design};
 
+use crate::states::fixed_vote;
+
 /// Designs × windows, with the distinct limits of all windows in rising order.
 #[derive(Debug, Clone)]
 pub struct Grid {
@@ -18,6 +20,8 @@ pub(crate) struct Limit {
     pub pmv: f64,
     pub lower: bool,
     pub upper: bool,
+    /// The first fixed vote that is not before it, by its place from neutral.
+    pub fixed: usize,
 }
 
 /// A grid that names something twice or nothing at all.
@@ -71,6 +75,7 @@ impl Grid {
             pmv,
             lower: windows.iter().any(|w| w.pmv_min() == pmv),
             upper: windows.iter().any(|w| w.pmv_max() == pmv),
+            fixed: fixed_vote(pmv),
         };
         let limits = votes.iter().map(limit).collect();
         let window_limits = windows.iter().map(|w| (index(w.pmv_min()), index(w.pmv_max()))).collect();

@@ -97,10 +97,10 @@ impl<'y> YearStates<'y> {
 }
 
 /// What a design does in the cheapest choice, or in the `nearest` one where none meets the window within its limits.
-fn of_design(bests: &[Best; 4], cheapest: Cheapest, nearest: impl FnOnce() -> Option<Used>) -> Option<Used> {
+fn of_design(bests: &[Best; 4], cheapest: Cheapest<'_>, nearest: impl FnOnce() -> Option<Used>) -> Option<Used> {
     match cheapest {
         Cheapest::Choice { place, powers, .. } => match bests[place] {
-            Best::Found(choice) => Some(used(choice.mode, &powers)),
+            Best::Found(choice) => Some(used(choice.mode, powers)),
             _ => None,
         },
         Cheapest::Limited => nearest(),

@@ -32,8 +32,8 @@ pub(crate) enum Offer {
 #[derive(Debug, Clone)]
 pub(crate) struct Units {
     units: Vec<Unit>,
-    /// Place of each design's unit, and the choices that it has.
-    designs: Vec<(usize, [bool; 4])>,
+    /// Place of each design's unit, and the places of the choices that it has.
+    designs: Vec<(usize, Vec<usize>)>,
 }
 
 /// An air unit.
@@ -45,15 +45,19 @@ struct Unit {
     choices: [bool; 4],
     /// Those in the window at hand.
     offers: [Offer; 4],
+    /// What they take in W; infinite where one does not meet the window.
+    total_w: [f64; 4],
+    /// Which of them did not settle.
+    lost: [bool; 4],
 }
 
 /// What a design does in a window.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum Cheapest {
+pub(crate) enum Cheapest<'u> {
     /// The choice at a place, what it takes, and how many W more the next one would.
     Choice {
         place: usize,
-        powers: Powers,
+        powers: &'u Powers,
         runner_up_w: Option<f64>,
     },
     /// No choice meets the window within the design's limits.
@@ -78,13 +82,19 @@ impl Units {
             let choices = Devices::CHOICES.map(|choice| design.devices.include(choice));
             let unit =
                 units.iter().position(|unit| designs[unit.design].has_air_unit_of(design)).unwrap_or_else(|| {
-                    units.push(Unit { design: place, choices: [false; 4], offers: [Offer::LeftOut; 4] });
+                    units.push(Unit {
+                        design: place,
+                        choices: [false; 4],
+                        offers: [Offer::LeftOut; 4],
+                        total_w: [f64::INFINITY; 4],
+                        lost: [false; 4],
+                    });
                     units.len() - 1
                 });
             for (any, has) in units[unit].choices.iter_mut().zip(choices) {
                 *any |= has;
             }
-            (unit, choices)
+            (unit, (0..4).filter(|place| choices[*place]).collect())
         };
         let designs = designs.iter().enumerate().map(of_design).collect();
         Self { units, designs }
@@ -100,44 +110,64 @@ impl Units {
         for unit in &mut self.units {
             let design = &designs[unit.design];
             for (place, best) in bests.iter().enumerate().filter(|(place, _)| unit.choices[*place]) {
-                unit.offers[place] = Offer::new(best, design);
+                let offer = Offer::new(best, design);
+                unit.total_w[place] = match &offer {
+                    Offer::Powers(powers) => powers.total_w,
+                    _ => f64::INFINITY,
+                };
+                unit.lost[place] = matches!(offer, Offer::Lost);
+                unit.offers[place] = offer;
             }
         }
     }
 
     /// The cheapest of the priced choices that a design has, and how much more the next one costs.
-    pub fn cheapest(&self, design: usize) -> Cheapest {
-        let (unit, choices) = &self.designs[design];
-        let offers = &self.units[*unit].offers;
-        let mut least: Option<(usize, &Powers)> = None;
-        let (mut least_w, mut second_w) = (f64::INFINITY, f64::INFINITY);
+    #[inline]
+    pub fn cheapest(&self, design: usize) -> Cheapest<'_> {
+        let (unit, places) = &self.designs[design];
+        let unit = &self.units[*unit];
+        let (mut cheapest, mut least_w, mut second_w, mut any_lost) = (0, f64::INFINITY, f64::INFINITY, false);
+        for &place in places {
+            let total_w = unit.total_w[place];
+            // Of numbers alone, so that no branch is needed.
+            let is_cheaper = total_w < least_w;
+            let dearer_w = if is_cheaper { least_w } else { total_w };
+            second_w = if dearer_w < second_w { dearer_w } else { second_w };
+            least_w = if is_cheaper { total_w } else { least_w };
+            cheapest = if is_cheaper { place } else { cheapest };
+            any_lost |= unit.lost[place];
+        }
+        match &unit.offers[cheapest] {
+            Offer::Powers(powers) if least_w.is_finite() && !any_lost => {
+                let runner_up_w = second_w.is_finite().then_some(second_w - least_w);
+                Cheapest::Choice { place: cheapest, powers, runner_up_w }
+            }
+            _ => unit.none(places),
+        }
+    }
+}
+
+impl Unit {
+    /// Why a design with some of the choices has none that is known to be the cheapest.
+    #[cold]
+    fn none(&self, places: &[usize]) -> Cheapest<'_> {
         let mut failure = Cheapest::NotConverged;
-        for (place, offer) in offers.iter().enumerate().filter(|(place, _)| choices[*place]) {
-            match (offer, &failure) {
-                (Offer::Powers(powers), _) if powers.total_w < least_w => {
-                    (second_w, least_w) = (least_w, powers.total_w);
-                    least = Some((place, powers));
-                }
-                (Offer::Powers(powers), _) => second_w = second_w.min(powers.total_w),
+        for &place in places {
+            match (&self.offers[place], &failure) {
                 (Offer::Limited, _) => failure = Cheapest::Limited,
                 // One that comes near the window is better than one that has no state.
-                (Offer::Infeasible(_), Cheapest::Limited) | (Offer::LeftOut, _) => {}
+                (Offer::Infeasible(_), Cheapest::Limited) | (Offer::Powers(_) | Offer::LeftOut, _) => {}
                 (Offer::Infeasible(reason), _) => failure = Cheapest::Infeasible(*reason),
                 // One choice that does not settle leaves the optimum unproven.
                 (Offer::Lost, _) => return Cheapest::NotConverged,
             }
         }
-        match least {
-            Some((place, powers)) => {
-                let runner_up_w = second_w.is_finite().then_some(second_w - powers.total_w);
-                Cheapest::Choice { place, powers: *powers, runner_up_w }
-            }
-            None => failure,
-        }
+        failure
     }
 }
 
 impl Offer {
+    #[inline]
     fn new(best: &Best, design: &Design) -> Self {
         match best {
             Best::Found(choice) => match choice.powers(design) {

@@ -38,24 +38,26 @@ impl<'a> SampleSolver<'a> {
         let cabin = Cabin::new(self.vehicle, self.views, disturbances);
         self.find_states(&cabin);
         let windows = self.grid.windows().len();
+        let (mut bests, mut states) = ([Best::LeftOut; 4], [None; 4]);
         for window in 0..windows {
-            let (bests, states) = bests(&self.states, self.grid, &cabin, window, self.wanted);
+            find_bests(&self.states, self.grid.window_limits()[window], &cabin, self.wanted, (&mut bests, &mut states));
             self.units.price(self.grid.designs(), &bests);
             for design in 0..self.grid.designs().len() {
-                let solved = |place: usize, powers: &Powers, runner_up_w| match (&bests[place], states[place]) {
-                    (Best::Found(choice), Some(state)) => {
-                        Outcome::Solved(operation(choice, powers, state), runner_up_w)
-                    }
-                    _ => Outcome::NotConverged,
-                };
                 let optimum = &mut optima[design * windows + window];
                 (optimum.design, optimum.window) = (design, window);
-                optimum.outcome = match self.units.cheapest(design) {
-                    Cheapest::Choice { place, powers, runner_up_w } => solved(place, &powers, runner_up_w),
-                    Cheapest::Limited => self.limited(&cabin, design, window, &bests),
-                    Cheapest::Infeasible(reason) => Outcome::Infeasible(reason),
-                    Cheapest::NotConverged => Outcome::NotConverged,
-                };
+                let outcome = &mut optimum.outcome;
+                // Each is written where it stays, since to move one costs as much as to find it.
+                match self.units.cheapest(design) {
+                    Cheapest::Choice { place, powers, runner_up_w } => match (&bests[place], states[place]) {
+                        (Best::Found(choice), Some(state)) => {
+                            *outcome = Outcome::Solved(operation(choice, powers, state), runner_up_w);
+                        }
+                        _ => *outcome = Outcome::NotConverged,
+                    },
+                    Cheapest::Limited => *outcome = self.limited(&cabin, design, window, &bests),
+                    Cheapest::Infeasible(reason) => *outcome = Outcome::Infeasible(reason),
+                    Cheapest::NotConverged => *outcome = Outcome::NotConverged,
+                }
             }
         }
     }
@@ -66,7 +68,8 @@ impl<'a> SampleSolver<'a> {
         let cabin = Cabin::new(self.vehicle, self.views, disturbances);
         self.find_states(&cabin);
         let design = &self.grid.designs()[design];
-        let (bests, states) = bests(&self.states, self.grid, &cabin, window, self.wanted);
+        let (mut bests, mut states) = ([Best::LeftOut; 4], [None; 4]);
+        find_bests(&self.states, self.grid.window_limits()[window], &cabin, self.wanted, (&mut bests, &mut states));
         std::array::from_fn(|place| {
             let devices = Devices::CHOICES[place];
             let operation = match (&bests[place], states[place]) {
@@ -98,21 +101,18 @@ impl<'a> SampleSolver<'a> {
     }
 }
 
-/// Every wanted choice in a window at its best, and the states of them.
+/// Puts every wanted choice between two limits at its best in its place, and the state of it.
 #[inline]
-fn bests<'s>(
+fn find_bests<'s>(
     states: &'s States,
-    grid: &Grid,
+    limits: (usize, usize),
     cabin: &Cabin<'_>,
-    window: usize,
     wanted: [bool; 4],
-) -> ([Best; 4], [Option<&'s SteadyState>; 4]) {
-    let (mut bests, mut at) = ([Best::LeftOut; 4], [None; 4]);
-    let limits = grid.window_limits()[window];
+    (bests, at): (&mut [Best; 4], &mut [Option<&'s SteadyState>; 4]),
+) {
     for place in (0..4).filter(|place| wanted[*place]) {
         (bests[place], at[place]) = best(states, limits, cabin, Devices::CHOICES[place]);
     }
-    (bests, at)
 }
 
 /// The best operation with a choice: the passive state moved into the window between two limits.

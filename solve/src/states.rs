@@ -7,7 +7,8 @@
 //! sign, and needs no limit of that kind beyond. The walks go over votes that are fixed, each predicted from the last two;
 //! limits and passive states lie between two fixed votes and are predicted from these. That makes a state the same to the
 //! last bit whatever else the grid asks for, so that optima computed at different times fit together, and leaves states that do
-//! not wait for each other: those with the heaters off and on, and the limits between two fixed votes, are found abreast.
+//! not wait for each other: those with the heaters off and on, and the limits between two fixed votes, are found abreast. So
+//! are two fixed votes in a row, although the second one may turn out to be beyond need.
 
 use cabin::{Cabin, Heaters, Lanes, Real, State, Target};
 
@@ -29,6 +30,8 @@ pub(crate) struct States {
     pub limits: [Vec<Seen>; 2],
     /// Of the walk at work: its states at the fixed votes from neutral outward.
     fixed: Vec<Fixed>,
+    /// The next of them, where it was found together with the last.
+    ahead: Option<Fixed>,
 }
 
 /// States at a fixed vote, with heaters off and on.
@@ -50,7 +53,7 @@ enum Way {
 impl States {
     pub fn new(limits: usize) -> Self {
         let needless = || vec![Seen::Needless; limits];
-        Self { passive: [[Seen::Needless; 2]; 2], limits: [needless(), needless()], fixed: Vec::new() }
+        Self { passive: [[Seen::Needless; 2]; 2], limits: [needless(), needless()], fixed: Vec::new(), ahead: None }
     }
 
     /// Finds the states of a sample for the heaters off and on, and designs without and with air curtain, as far as they are
@@ -76,13 +79,16 @@ impl States {
         places: impl Iterator<Item = usize> + Clone,
     ) {
         self.fixed.clear();
+        self.ahead = None;
         self.fixed.push(*neutral);
         let mut places = places.peekable();
+        // As far as windows that begin beyond neutral ask for it.
+        let anyway = places.clone().filter(|&place| walk.is_of_other_end(place)).last();
+        let anyway = anyway.map_or(0, |place| walk.limits[place].fixed);
         while let Some(&place) = places.peek() {
-            let after = walk.after(place);
+            let after = walk.limits[place].fixed;
             while self.fixed.len() <= after {
-                let anyway = places.clone().any(|place| walk.is_of_other_end(place));
-                if !(anyway || walk.needed(&self.fixed[self.fixed.len() - 1]).as_flattened().contains(&true)) {
+                if !(after <= anyway || walk.needed(&self.fixed[self.fixed.len() - 1]).as_flattened().contains(&true)) {
                     break;
                 }
                 self.step(cabin, walk.way);
@@ -92,7 +98,7 @@ impl States {
             }
             let mut some = [place; LIMITS];
             let mut count = 0;
-            while let Some(place) = places.next_if(|&place| count < LIMITS && walk.after(place) == after) {
+            while let Some(place) = places.next_if(|&place| count < LIMITS && walk.limits[place].fixed == after) {
                 some[count] = place;
                 count += 1;
             }
@@ -101,16 +107,24 @@ impl States {
         self.passive_states(cabin, &walk);
     }
 
-    /// To the next fixed vote.
+    /// To the next fixed vote; the one after it is found abreast.
     fn step(&mut self, cabin: &Cabin<'_>, way: Way) {
-        let vote = self.fixed.len() as f64 * if way == Way::Warmer { FIXED_STEP } else { -FIXED_STEP };
+        if let Some(fixed) = self.ahead.take() {
+            self.fixed.push(fixed);
+            return;
+        }
+        let step = if way == Way::Warmer { FIXED_STEP } else { -FIXED_STEP };
+        let vote = |after: usize| (self.fixed.len() + after) as f64 * step;
+        let votes = [vote(0), vote(1)];
         let guess = match self.fixed.as_slice() {
             [.., before, last] => Guess::Beyond(&last.found.state, &before.found.state),
             [last] => Guess::Along(&last.found.state),
             [] => return,
         };
-        let fixed = Fixed::new(cabin, vote, guess);
-        self.fixed.push(fixed);
+        let target = Target::Vote(Lanes(std::array::from_fn(|lane| votes[lane / 2])));
+        let found = Search { cabin, target, heaters: HEATERS, guess }.run();
+        self.fixed.push(Fixed { vote: votes[0], found: found.pair(0) });
+        self.ahead = Some(Fixed { vote: votes[1], found: found.pair(1) });
     }
 
     /// The states at some limits that lie between two fixed votes, or at the second of them.
@@ -222,11 +236,6 @@ impl Walk<'_> {
         }
     }
 
-    /// The first fixed vote that is not before a limit, by its place from neutral.
-    fn after(&self, place: usize) -> usize {
-        (self.limits[place].pmv.abs() / FIXED_STEP).ceil() as usize
-    }
-
     /// Whether the unit is needed at a fixed vote, or might be for all that is known.
     fn needed(&self, fixed: &Fixed) -> [[bool; 2]; 2] {
         std::array::from_fn(|on| {
@@ -245,6 +254,11 @@ impl Walk<'_> {
 
 /// Distance of the fixed votes.
 const FIXED_STEP: f64 = 0.375;
+
+/// The first fixed vote that is not before a vote, by its place from neutral.
+pub(crate) fn fixed_vote(pmv: f64) -> usize {
+    (pmv.abs() / FIXED_STEP).ceil() as usize
+}
 
 /// Where the search for the first state starts, in K.
 pub(crate) const START_K: f64 = 295.0;
