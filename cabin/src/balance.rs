@@ -34,21 +34,21 @@ impl Heaters {
 pub struct Cabin<'a> {
     pub(crate) ambient_k: f64,
     pub(crate) solar: SolarGains,
-    gains_w: [f64; 2],
+    pub(crate) gains_w: [f64; 2],
     /// Convection in W/K: shell inside, interior, heaters, shell outside.
     pub(crate) g_shell: f64,
     pub(crate) g_interior: f64,
     pub(crate) g_heater: f64,
-    g_outside: f64,
+    pub(crate) g_outside: f64,
     /// Conduction through the shell in W/K.
-    g_conduction: f64,
+    pub(crate) g_conduction: f64,
     /// Radiation in W/K⁴: heaters to interior, heaters to shell, interior to shell, shell to surroundings.
-    r_heater_interior: f64,
-    r_heater_shell: f64,
-    r_interior_shell: f64,
-    r_outside: f64,
+    pub(crate) r_heater_interior: f64,
+    pub(crate) r_heater_shell: f64,
+    pub(crate) r_interior_shell: f64,
+    pub(crate) r_outside: f64,
     /// What the outside of the shell gets from sun and surroundings in W, less what it gives at 0 K.
-    outside_w: f64,
+    pub(crate) outside_w: f64,
     passenger_heat_w: f64,
     /// Door loss in W/K^1.5 without curtain, with all doors open and as they are.
     door_all_open: f64,
@@ -151,17 +151,16 @@ impl<'a> Cabin<'a> {
         door_loss_share: R,
     ) -> (R, R) {
         let door_w_k = self.door_conductance_w_k(t.cabin_k, door_loss_share);
-        let heat_w = (t.cabin_k - t.shell_inside_k) * self.g_shell
-            + (t.cabin_k - t.interior_k) * self.g_interior
-            + (t.cabin_k - t.radiant_heater_k) * self.g_heater
-            + door_w_k * (t.cabin_k - self.ambient_k)
-            - self.gains_w[0]
-            - self.gains_w[1];
-        let one = R::splat(1.0);
-        let slope = (one - slopes.shell_inside) * self.g_shell
-            + (one - slopes.interior) * self.g_interior
-            + (one - slopes.radiant_heater) * self.g_heater
-            + door_w_k * 1.5;
+        let mut heat_w = door_w_k.mul_add(t.cabin_k - self.ambient_k, -(self.gains_w[0] + self.gains_w[1]));
+        let mut slope = door_w_k * 1.5;
+        for (surface_k, follows, conductance) in [
+            (t.radiant_heater_k, slopes.radiant_heater, self.g_heater),
+            (t.interior_k, slopes.interior, self.g_interior),
+            (t.shell_inside_k, slopes.shell_inside, self.g_shell),
+        ] {
+            heat_w = (t.cabin_k - surface_k).mul_add(conductance, heat_w);
+            slope = (R::splat(1.0) - follows).mul_add(conductance, slope);
+        }
         (heat_w, slope)
     }
 
@@ -170,28 +169,15 @@ impl<'a> Cabin<'a> {
     #[inline(always)]
     pub fn radiant_heater_power_w<R: Real>(&self, t: &Temperatures<R>) -> R {
         let heater4 = pow4(t.radiant_heater_k);
-        (t.radiant_heater_k - t.cabin_k) * self.g_heater
-            + (heater4 - pow4(t.interior_k)) * self.r_heater_interior
-            + (heater4 - pow4(t.shell_inside_k)) * self.r_heater_shell
+        let shell_w = (heater4 - pow4(t.shell_inside_k)) * self.r_heater_shell;
+        let radiation_w = (heater4 - pow4(t.interior_k)).mul_add(self.r_heater_interior, shell_w);
+        (t.radiant_heater_k - t.cabin_k).mul_add(self.g_heater, radiation_w)
     }
 
     /// Every heat flow at the given temperatures, with the given air unit heat and heater power in W.
     #[must_use]
     #[inline]
     pub fn flows(&self, t: &Temperatures, curtain: bool, air_unit_w: f64, radiant_heater_power_w: f64) -> HeatFlows {
-        self.flows_abreast(t, self.door_loss_share(curtain), air_unit_w, radiant_heater_power_w)
-    }
-
-    /// As [`Cabin::flows`], for one bus or several; `door_loss_share` is [`Cabin::door_loss_share`] of each.
-    #[must_use]
-    #[inline(always)]
-    pub fn flows_abreast<R: Real>(
-        &self,
-        t: &Temperatures<R>,
-        door_loss_share: R,
-        air_unit_w: R,
-        radiant_heater_power_w: R,
-    ) -> HeatFlows<R> {
         let [heater4, interior4, shell4] = [t.radiant_heater_k, t.interior_k, t.shell_inside_k].map(pow4);
         HeatFlows {
             convection_shell_inside_w: (t.cabin_k - t.shell_inside_k) * self.g_shell,
@@ -203,7 +189,7 @@ impl<'a> Cabin<'a> {
             radiation_heater_shell_w: (heater4 - shell4) * self.r_heater_shell,
             radiation_heater_interior_w: (heater4 - interior4) * self.r_heater_interior,
             radiation_interior_shell_w: (interior4 - shell4) * self.r_interior_shell,
-            door_w: self.door_conductance_w_k(t.cabin_k, door_loss_share) * (t.cabin_k - self.ambient_k),
+            door_w: self.door_conductance_w_k(t.cabin_k, self.door_loss_share(curtain)) * (t.cabin_k - self.ambient_k),
             passengers_w: self.gains_w[0],
             other_w: self.gains_w[1],
             air_unit_w,
@@ -245,54 +231,54 @@ impl<'a> Cabin<'a> {
         let (hs_source, hs_target) = (heater3 * r_hs, inside3 * r_hs);
         let (is_source, is_target) = (interior3 * r_is, inside3 * r_is);
         let outward = outside3 * (4.0 * self.r_outside);
-        let hi_w = (hi_source * t.radiant_heater_k - hi_target * t.interior_k) * 0.75;
-        let hs_w = (hs_source * t.radiant_heater_k - hs_target * t.shell_inside_k) * 0.75;
-        let is_w = (is_source * t.interior_k - is_target * t.shell_inside_k) * 0.75;
+        let hi_w = hi_source.mul_add(t.radiant_heater_k, -hi_target * t.interior_k) * 0.75;
+        let hs_w = hs_source.mul_add(t.radiant_heater_k, -hs_target * t.shell_inside_k) * 0.75;
+        let is_w = is_source.mul_add(t.interior_k, -is_target * t.shell_inside_k) * 0.75;
 
         // The heaters follow interior and inside of the shell, or are held at their target.
         let (half, one) = (R::splat(0.5), R::splat(1.0));
         let free_inverse = one / (hi_source + hs_source + self.g_heater);
-        let free_k = (t.cabin_k * self.g_heater + hi_w + hs_w) * free_inverse;
+        let free_k = t.cabin_k.mul_add(self.g_heater, hi_w + hs_w) * free_inverse;
         let heater_inverse = held.above(half, R::splat(0.0), free_inverse);
         let heater_k = held.above(half, t.radiant_heater_k, free_k);
         let (per_interior, per_inside) = (hi_target * heater_inverse, hs_target * heater_inverse);
         let per_cabin = heater_inverse * self.g_heater;
         // The outside of the shell follows its inside.
         let outside_inverse = one / (outward + (self.g_conduction + self.g_outside));
-        let outside_k = (outward * t.shell_outside_k * 0.75 + self.outside_w) * outside_inverse;
+        let outside_k = (outward * 0.75).mul_add(t.shell_outside_k, self.outside_w) * outside_inverse;
         let outside_per_inside = outside_inverse * self.g_conduction;
 
         // What is left for interior and inside of the shell: a two-by-two system.
-        let interior_own = hi_target + is_source + self.g_interior - hi_source * per_interior;
-        let interior_other = is_target + hi_source * per_inside;
-        let inside_own = hs_target + is_target + (self.g_shell + self.g_conduction)
-            - hs_source * per_inside
-            - outside_per_inside * self.g_conduction;
-        let inside_other = is_source + hs_source * per_interior;
-        let inverse = one / (interior_own * inside_own - interior_other * inside_other);
+        let interior_own = hi_source.mul_add(-per_interior, hi_target + is_source + self.g_interior);
+        let interior_other = hi_source.mul_add(per_inside, is_target);
+        let inside_own = hs_target + is_target + (self.g_shell + self.g_conduction);
+        let inside_own = outside_per_inside.mul_add(-self.g_conduction, hs_source.mul_add(-per_inside, inside_own));
+        let inside_other = hs_source.mul_add(per_interior, is_source);
+        let inverse = one / interior_own.mul_add(inside_own, -interior_other * inside_other);
         let solve = |interior: R, inside: R| {
-            let interior_times = inside_own * interior + interior_other * inside;
-            (interior_times * inverse, (interior_own * inside + inside_other * interior) * inverse)
+            let interior_times = inside_own.mul_add(interior, interior_other * inside);
+            (interior_times * inverse, interior_own.mul_add(inside, inside_other * interior) * inverse)
         };
+        let interior_w = t.cabin_k.mul_add(self.g_interior, is_w - hi_w + self.solar.interior_w);
+        let inside_w = t.cabin_k.mul_add(self.g_shell, R::splat(self.solar.shell_inside_w) - hs_w - is_w);
         let (interior_k, shell_inside_k) = solve(
-            t.cabin_k * self.g_interior + self.solar.interior_w + hi_source * heater_k + is_w - hi_w,
-            t.cabin_k * self.g_shell + self.solar.shell_inside_w + hs_source * heater_k - hs_w - is_w
-                + outside_k * self.g_conduction,
+            hi_source.mul_add(heater_k, interior_w),
+            outside_k.mul_add(self.g_conduction, hs_source.mul_add(heater_k, inside_w)),
         );
         let (interior, shell_inside) =
-            solve(hi_source * per_cabin + self.g_interior, hs_source * per_cabin + self.g_shell);
+            solve(hi_source.mul_add(per_cabin, self.g_interior), hs_source.mul_add(per_cabin, self.g_shell));
         let temperatures = Temperatures {
             cabin_k: t.cabin_k,
             interior_k,
             shell_inside_k,
-            shell_outside_k: outside_k + outside_per_inside * shell_inside_k,
-            radiant_heater_k: heater_k + per_interior * interior_k + per_inside * shell_inside_k,
+            shell_outside_k: outside_per_inside.mul_add(shell_inside_k, outside_k),
+            radiant_heater_k: per_inside.mul_add(shell_inside_k, per_interior.mul_add(interior_k, heater_k)),
         };
         let slopes = Slopes {
             interior,
             shell_inside,
             shell_outside: outside_per_inside * shell_inside,
-            radiant_heater: per_cabin + per_interior * interior + per_inside * shell_inside,
+            radiant_heater: per_inside.mul_add(shell_inside, per_interior.mul_add(interior, per_cabin)),
         };
         (temperatures, slopes)
     }

@@ -34,7 +34,7 @@ impl Cabin<'_> {
             let radiant_k = self.radiant_k([heater4, interior4, shell4], view);
             let (shift_k, dry) = self.pmv.step_surface(*surface_k, air_k, radiant_k - STANDARD_SHIFT_K);
             *surface_k = *surface_k + shift_k;
-            dry_w_m2 = dry_w_m2 + dry * weight;
+            dry_w_m2 = dry.mul_add(weight, dry_w_m2);
         }
         self.pmv.vote(dry_w_m2, R::splat(0.0), t.cabin_k - ZERO_CELSIUS_K).0
     }
@@ -55,7 +55,7 @@ impl Cabin<'_> {
         // for each unit of F_rh; now, where the balances hold, and for each kelvin of the cabin.
         let seen = |heater: R, interior: R, inside: R| {
             let inside = inside3 * inside;
-            (interior3 * interior + inside * (1.0 - self.view_interior), heater3 * heater - inside)
+            (inside.mul_add(1.0 - self.view_interior, interior3 * interior), heater3.mul_add(heater, -inside))
         };
         let now = seen(t.radiant_heater_k, t.interior_k, t.shell_inside_k);
         let then = seen(balanced.radiant_heater_k, balanced.interior_k, balanced.shell_inside_k);
@@ -64,18 +64,18 @@ impl Cabin<'_> {
         let (mut dry_w_m2, mut dry_slope) = (R::splat(0.0), R::splat(0.0));
         let mut lines = *clothes;
         for ((view, weight), clothing) in nodes.iter().zip(&mut lines) {
-            let fourth = now.0 + now.1 * *view;
+            let fourth = now.1.mul_add(*view, now.0);
             let radiant_k = fourth.sqrt().sqrt();
             // To first order the new T_mr is T_mr⁻³ times the cubes with the new temperatures.
             let per_cube = radiant_k / fourth;
             let radiant = Line {
-                value: (then.0 + then.1 * *view) * per_cube - STANDARD_SHIFT_K,
-                per_air_k: (slope.0 + slope.1 * *view) * per_cube,
+                value: then.1.mul_add(*view, then.0).mul_add(per_cube, -STANDARD_SHIFT_K),
+                per_air_k: slope.1.mul_add(*view, slope.0) * per_cube,
             };
             let (surface, dry) = self.pmv.clothing(clothing.value, air_k, radiant_k - STANDARD_SHIFT_K, radiant);
             *clothing = surface;
-            dry_w_m2 = dry_w_m2 + dry.value * *weight;
-            dry_slope = dry_slope + dry.per_air_k * *weight;
+            dry_w_m2 = dry.value.mul_add(*weight, dry_w_m2);
+            dry_slope = dry.per_air_k.mul_add(*weight, dry_slope);
         }
         let (value, per_air_k) = self.pmv.vote(dry_w_m2, dry_slope, t.cabin_k - ZERO_CELSIUS_K);
         (Line { value, per_air_k }, lines)
@@ -165,8 +165,8 @@ impl Cabin<'_> {
     /// of the shell: T_mr⁴ = F_rh T_rh⁴ + (1 − F_int − F_rh) T_s,i⁴ + F_int T_int⁴ (paper, section 2.2).
     #[inline(always)]
     fn radiant_k<R: Real>(&self, [heater4, interior4, shell4]: [R; 3], view: f64) -> R {
-        let fourth = heater4 * view + shell4 * (1.0 - self.view_interior - view) + interior4 * self.view_interior;
-        fourth.sqrt().sqrt()
+        let fourth = shell4.mul_add(1.0 - self.view_interior - view, interior4 * self.view_interior);
+        heater4.mul_add(view, fourth).sqrt().sqrt()
     }
 }
 

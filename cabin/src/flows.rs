@@ -1,6 +1,6 @@
 //! Temperatures and heat flows of the five thermal reservoirs.
 
-use crate::{Real, SolarGains};
+use crate::SolarGains;
 
 /// Temperatures of the five thermal reservoirs in K; of one bus, or of several abreast.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,45 +33,44 @@ pub struct Slopes<R = f64> {
 
 /// Every heat flow of the model in W, positive in the direction of the paper's equations.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct HeatFlows<R = f64> {
+pub struct HeatFlows {
     /// Cabin air to the inside of the shell, Q_conv,s,i.
-    pub convection_shell_inside_w: R,
+    pub convection_shell_inside_w: f64,
     /// Interior to cabin air, Q_conv,int.
-    pub convection_interior_w: R,
+    pub convection_interior_w: f64,
     /// Outside of the shell to ambient air, Q_conv,s,o.
-    pub convection_shell_outside_w: R,
+    pub convection_shell_outside_w: f64,
     /// Radiant heaters to cabin air, Q_conv,rh.
-    pub convection_radiant_heater_w: R,
+    pub convection_radiant_heater_w: f64,
     /// Through the shell, outwards, Q_cond.
-    pub conduction_shell_w: R,
+    pub conduction_shell_w: f64,
     /// Outside of the shell to its surroundings, Q_rad,s,o.
-    pub radiation_shell_outside_w: R,
+    pub radiation_shell_outside_w: f64,
     /// Radiant heaters to shell, Q_rad,rh,s.
-    pub radiation_heater_shell_w: R,
+    pub radiation_heater_shell_w: f64,
     /// Radiant heaters to interior, Q_rad,rh,int.
-    pub radiation_heater_interior_w: R,
+    pub radiation_heater_interior_w: f64,
     /// Interior to shell, Q_rad,int,s.
-    pub radiation_interior_shell_w: R,
+    pub radiation_interior_shell_w: f64,
     /// Through open doors, outwards, Q_door (eq. qdoor).
-    pub door_w: R,
+    pub door_w: f64,
     /// From passengers, Q_pass (eq. metabolic-heat).
     pub passengers_w: f64,
     /// From lights, screens and electric components, Q_other.
     pub other_w: f64,
     /// From the air unit, Q_hc; negative when cooling.
-    pub air_unit_w: R,
+    pub air_unit_w: f64,
     /// Electric power of the radiant heaters, P_rh.
-    pub radiant_heater_power_w: R,
+    pub radiant_heater_power_w: f64,
     /// From the sun.
     pub solar: SolarGains,
 }
 
-impl<R: Real> HeatFlows<R> {
+impl HeatFlows {
     /// Net heat into each reservoir in W: heaters, interior, cabin, inside and outside of the shell; zero in steady
     /// state (eq. odes).
     #[must_use]
-    #[inline(always)]
-    pub fn net_w(&self) -> [R; 5] {
+    pub fn net_w(&self) -> [f64; 5] {
         [
             self.radiant_heater_power_w
                 - self.convection_radiant_heater_w
@@ -96,9 +95,7 @@ impl<R: Real> HeatFlows<R> {
                 - self.radiation_shell_outside_w,
         ]
     }
-}
 
-impl HeatFlows {
     /// No heat anywhere.
     pub const ZERO: Self = Self {
         convection_shell_inside_w: 0.0,

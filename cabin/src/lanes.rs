@@ -73,6 +73,13 @@ operator!(Sub, sub, -);
 operator!(Mul, mul, *);
 operator!(Div, div, /);
 
+impl<const W: usize> From<f64> for Lanes<W> {
+    #[inline(always)]
+    fn from(value: f64) -> Self {
+        Self([value; W])
+    }
+}
+
 impl<const W: usize> Neg for Lanes<W> {
     type Output = Self;
     #[inline(always)]
@@ -85,6 +92,16 @@ impl<const W: usize> Real for Lanes<W> {
     #[inline(always)]
     fn splat(value: f64) -> Self {
         Self([value; W])
+    }
+
+    #[inline(always)]
+    fn mul_add(self, factor: impl Into<Self>, term: impl Into<Self>) -> Self {
+        let (factor, term) = (factor.into(), term.into());
+        let mut out = self;
+        for i in 0..W {
+            out.0[i] = self.0[i].mul_add(factor.0[i], term.0[i]);
+        }
+        out
     }
 
     #[inline(always)]
@@ -106,10 +123,10 @@ impl<const W: usize> Real for Lanes<W> {
         const LN_2: [f64; 2] = [6.931_471_803_691_238e-1, 1.908_214_929_270_587_7e-10];
         let rounded = self * std::f64::consts::LOG2_E + ROUND;
         let n = rounded - ROUND;
-        let rest = self - n * LN_2[0] - n * LN_2[1];
+        let rest = n.mul_add(-LN_2[1], n.mul_add(-LN_2[0], self));
         let mut sum = Self::splat(TAYLOR[TAYLOR.len() - 1]);
         for coefficient in TAYLOR.iter().rev().skip(1) {
-            sum = sum * rest + *coefficient;
+            sum = sum.mul_add(rest, *coefficient);
         }
         sum.zip(rounded, |sum, rounded| sum * f64::from_bits((rounded.to_bits() << 52).wrapping_add(1.0_f64.to_bits())))
     }

@@ -10,7 +10,6 @@
 
 mod abreast;
 mod balance;
-mod changes;
 mod clothing;
 mod comfort;
 mod cop;
@@ -21,6 +20,7 @@ mod flows;
 mod lanes;
 mod limits;
 mod load;
+mod net;
 mod newton;
 mod operation;
 mod passengers;

@@ -65,7 +65,7 @@ impl<R: Real, const N: usize> Newton<'_, R, N> {
             Target::Vote(pmv) => (pmv - vote.value) / vote.per_air_k,
             Target::Heat { door_loss_share, heat_w, per_k, at_k } => {
                 let (taken_w, slope_w_k) = self.cabin.air_unit_heat_abreast_w(&balanced, &slopes, door_loss_share);
-                let brought_w = heat_w + per_k * (t.cabin_k - at_k);
+                let brought_w = per_k.mul_add(t.cabin_k - at_k, heat_w);
                 (brought_w - taken_w) / (slope_w_k - per_k)
             }
         };
@@ -79,7 +79,7 @@ impl<R: Real, const N: usize> Newton<'_, R, N> {
             pmv: match *self.target {
                 // As it is to rounding: a window of no width then has votes of 0, not of 1e-27.
                 Target::Vote(pmv) => pmv,
-                _ => vote.value + vote.per_air_k * cabin_step_k,
+                _ => vote.per_air_k.mul_add(cabin_step_k, vote.value),
             },
             pmv_slope: vote.per_air_k,
             clothes: self.state.clothes,
@@ -87,7 +87,7 @@ impl<R: Real, const N: usize> Newton<'_, R, N> {
         // A sum, not the largest: it is no number as soon as one of them is none.
         let mut moved_k = cabin_step_k.abs();
         let mut follow = |k: &mut R, balanced_k: R, slope: R| {
-            let next_k = balanced_k + slope * cabin_step_k;
+            let next_k = slope.mul_add(cabin_step_k, balanced_k);
             moved_k = moved_k + (next_k - *k).abs();
             *k = next_k;
         };

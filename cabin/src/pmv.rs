@@ -184,15 +184,17 @@ impl PmvModel {
         let (convection, per_air) = (coefficient * self.area_factor * difference, slope * self.area_factor);
         // L = fixed + own t' − per_radiant t_r' − per_air t_a', with t' = skin − I_cl L.
         let skin_k = self.skin_k();
-        let fixed = (per_radiant * radiant_k - per_surface * t) * 0.75 + (convection - per_air * difference);
+        let radiation_w_m2 = per_radiant.mul_add(radiant_k, -per_surface * t);
+        let fixed = radiation_w_m2.mul_add(0.75, per_air.mul_add(-difference, convection));
         let own = per_surface + per_air;
-        let inverse = R::splat(1.0) / (own * self.insulation + 1.0);
+        let inverse = R::splat(1.0) / own.mul_add(self.insulation, 1.0);
+        let of_surroundings = per_radiant.mul_add(radiant.value, per_air * air_k);
         let dry = Line {
-            value: (fixed + own * skin_k - per_radiant * radiant.value - per_air * air_k) * inverse,
-            per_air_k: -(per_radiant * radiant.per_air_k + per_air) * inverse,
+            value: (own.mul_add(skin_k, fixed) - of_surroundings) * inverse,
+            per_air_k: -per_radiant.mul_add(radiant.per_air_k, per_air) * inverse,
         };
         let surface =
-            Line { value: dry.value * -self.insulation + skin_k, per_air_k: dry.per_air_k * -self.insulation };
+            Line { value: dry.value.mul_add(-self.insulation, skin_k), per_air_k: dry.per_air_k * -self.insulation };
         (surface, dry)
     }
 
@@ -200,10 +202,10 @@ impl PmvModel {
     #[inline(always)]
     pub(crate) fn step_surface<R: Real>(&self, surface_k: R, air_k: R, radiant_k: R) -> (R, R) {
         let loss = self.dry_loss(surface_k, air_k, radiant_k);
-        let inverse = R::splat(1.0) / (loss.per_surface * self.insulation + 1.0);
-        let excess = surface_k + loss.w_m2 * self.insulation - self.skin_k();
+        let inverse = R::splat(1.0) / loss.per_surface.mul_add(self.insulation, 1.0);
+        let excess = loss.w_m2.mul_add(self.insulation, surface_k - self.skin_k());
         let shift = -excess * inverse;
-        (shift, loss.w_m2 + loss.per_surface * shift)
+        (shift, loss.per_surface.mul_add(shift, loss.w_m2))
     }
 
     #[inline(always)]
@@ -213,8 +215,8 @@ impl PmvModel {
         let (convection, convection_slope) = self.convection(t - air_k);
         let radiation = 3.96e-8 * self.area_factor;
         DryLoss {
-            w_m2: (t3 * t - radiant3 * radiant_k) * radiation + convection * self.area_factor,
-            per_surface: t3 * (4.0 * radiation) + convection_slope * self.area_factor,
+            w_m2: t3.mul_add(t, -radiant3 * radiant_k).mul_add(radiation, convection * self.area_factor),
+            per_surface: t3.mul_add(4.0 * radiation, convection_slope * self.area_factor),
         }
     }
 
@@ -234,11 +236,11 @@ impl PmvModel {
     pub(crate) fn vote<R: Real>(&self, dry_w_m2: R, dry_slope: R, air_c: R) -> (R, R) {
         let m = self.metabolic_w_m2;
         let inverse = R::splat(1.0) / (air_c + 235.0);
-        let vapour_pa = (inverse * -4030.183 + 16.6536).exp() * (self.relative_humidity * 1000.0);
+        let vapour_pa = inverse.mul_add(-4030.183, 16.6536).exp() * (self.relative_humidity * 1000.0);
         let vapour_slope = vapour_pa * 4030.183 * inverse * inverse;
         let per_pa = 0.00305 + 1.7e-5 * m;
-        let moist_w_m2 = R::splat(self.fixed_loss_w_m2) - vapour_pa * per_pa - air_c * (0.0014 * m);
-        let moist_slope = vapour_slope * -per_pa - 0.0014 * m;
+        let moist_w_m2 = air_c.mul_add(-0.0014 * m, vapour_pa.mul_add(-per_pa, self.fixed_loss_w_m2));
+        let moist_slope = vapour_slope.mul_add(-per_pa, -0.0014 * m);
         ((R::splat(m) - moist_w_m2 - dry_w_m2) * self.sensitivity, (moist_slope + dry_slope) * -self.sensitivity)
     }
 

@@ -13,9 +13,13 @@ pub trait Real:
     + Add<f64, Output = Self>
     + Sub<f64, Output = Self>
     + Mul<f64, Output = Self>
+    + From<f64>
 {
     /// The same number for all.
     fn splat(value: f64) -> Self;
+    /// `self · factor + term`. Abreast it is rounded once, which is one instruction where machines have one and the same number
+    /// to the bit where they do not.
+    fn mul_add(self, factor: impl Into<Self>, term: impl Into<Self>) -> Self;
     /// Square root.
     fn sqrt(self) -> Self;
     /// Absolute value.
@@ -32,6 +36,11 @@ impl Real for f64 {
     #[inline(always)]
     fn splat(value: f64) -> Self {
         value
+    }
+
+    #[inline(always)]
+    fn mul_add(self, factor: impl Into<Self>, term: impl Into<Self>) -> Self {
+        self * factor.into() + term.into()
     }
 
     #[inline(always)]

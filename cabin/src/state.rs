@@ -203,7 +203,7 @@ impl<R: Real> State<R> {
         let step_k = (pmv - self.pmv) / self.pmv_slope;
         let (mut values, slopes) = self.unknowns();
         for (value, slope) in values.iter_mut().zip(slopes) {
-            *value = *value + slope * step_k;
+            *value = slope.mul_add(step_k, *value);
         }
         self.with(values)
     }
@@ -222,9 +222,8 @@ impl<R: Real> State<R> {
         let own_slope = s * next * next * width / self.pmv_slope;
         let ((others, other_slopes), (mut values, slopes)) = (other.unknowns(), self.unknowns());
         for i in 0..values.len() {
-            let value = values[i];
-            values[i] =
-                value + (others[i] - value) * other_value + other_slopes[i] * other_slope + slopes[i] * own_slope;
+            let value = (others[i] - values[i]).mul_add(other_value, values[i]);
+            values[i] = slopes[i].mul_add(own_slope, other_slopes[i].mul_add(other_slope, value));
         }
         self.with(values)
     }

@@ -52,7 +52,7 @@ impl TrailingVotes {
     pub fn up_to(&self, vote: Lanes, seconds: usize) -> Votes {
         let mut votes = [vote; VOTE_S];
         for (j, between) in votes.iter_mut().enumerate().take(seconds) {
-            *between = self.last + (vote - self.last) * ((j + 1) as f64 / seconds as f64);
+            *between = (vote - self.last).mul_add((j + 1) as f64 / seconds as f64, self.last);
         }
         votes
     }
@@ -67,7 +67,7 @@ impl TrailingVotes {
         let before = if is_full { self.before } else { Lanes::ZERO };
         for (j, passengers) in on_board.iter().enumerate() {
             let share = (j + 1) as f64 / VOTE_S as f64;
-            self.sum = self.sum + (votes[j] - (before + (oldest - before) * share));
+            self.sum = self.sum + (votes[j] - (oldest - before).mul_add(share, before));
             let seconds = (self.seconds + j + 1).min(WINDOW_S);
             means[j] = self.sum * (1.0 / seconds as f64);
             if *passengers >= 1.0 {

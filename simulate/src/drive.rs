@@ -67,7 +67,7 @@ fn abreast(
 }
 
 /// A drive that is compiled once for each set of vector instructions, and runs with what the machine has. All of them round
-/// alike: none contracts a product and a sum into one operation.
+/// alike: a product and a sum are one operation where the code says so, and nowhere else.
 struct Run<'a, 'm, 'v, 'r> {
     drive: Drive<'a, 'm, 'v>,
     judge: &'a mut Judge,

@@ -59,10 +59,10 @@ impl Judge {
                 continue;
             }
             self.passenger_s += passengers;
-            self.abs_vote = self.abs_vote + vote.abs() * *passengers;
+            self.abs_vote = vote.abs().mul_add(*passengers, self.abs_vote);
             for window in &mut self.windows {
                 let below = window.low.above(*vote, Lanes::ONE, Lanes::ZERO);
-                window.outside_s = window.outside_s + vote.above(window.high, Lanes::ONE, below) * *passengers;
+                window.outside_s = vote.above(window.high, Lanes::ONE, below).mul_add(*passengers, window.outside_s);
             }
         }
     }

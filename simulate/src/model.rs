@@ -32,8 +32,12 @@ pub fn depot_temperature_k(ambient_k: f64) -> f64 {
     (ambient_k - MILD_K) * 0.5 + MILD_K
 }
 
-/// Heaters, interior, cabin, inside and outside of the shell in K, heat of the machine in W; or their slopes.
+/// Heaters, interior, cabin, inside and outside of the shell in K, heat of the machine in W; or what drives them, all in W.
 pub(crate) type Vector = [Lanes; 6];
+
+/// Places of cabin air and machine in it.
+const AIR: usize = 2;
+const MACHINE: usize = 5;
 
 /// The temperatures of a vector.
 #[inline(always)]
@@ -89,8 +93,9 @@ pub(crate) struct AirUnits<'d> {
     offset_k: Lanes,
     least: Lanes,
     largest: Lanes,
-    /// 1 where heat comes at once, 0 where it lags.
+    /// 1 where heat comes at once, 0 where it lags; and the other way round.
     at_once: Lanes,
+    lags: Lanes,
 }
 
 impl<'d> AirUnits<'d> {
@@ -108,6 +113,7 @@ impl<'d> AirUnits<'d> {
             least: Lanes::ZERO,
             largest: Lanes::ZERO,
             at_once: Lanes::ZERO,
+            lags: Lanes::ZERO,
         };
         units.refresh();
         units
@@ -148,6 +154,7 @@ impl<'d> AirUnits<'d> {
             self.largest.0[lane] = largest;
             let at_once = !cools && design.heating == Heating::Ptc;
             self.at_once.0[lane] = f64::from(u8::from(at_once));
+            self.lags.0[lane] = f64::from(u8::from(!at_once));
         }
         self.any_other = self.others.iter().any(Option::is_some);
     }
@@ -157,8 +164,8 @@ impl<'d> AirUnits<'d> {
     fn cop(&self, above_ambient_k: Lanes) -> Lanes {
         let lift_k = self.warms * above_ambient_k;
         let inverse = Lanes::ONE / (lift_k.max(Lanes::ZERO) + self.offset_k);
-        let hyperbola = self.numerator_k * inverse;
-        let mut cop = (self.constant - self.slope_per_k * lift_k + hyperbola).max(self.least).min(self.largest);
+        let linear = self.slope_per_k.mul_add(-lift_k, self.constant);
+        let mut cop = self.numerator_k.mul_add(inverse, linear).max(self.least).min(self.largest);
         if self.any_other {
             for (lane, other) in self.others.iter().enumerate() {
                 if let Some(curve) = other {
@@ -175,33 +182,11 @@ impl<'d> AirUnits<'d> {
         let lift_k = self.warms * above_ambient_k;
         let inverse = Lanes::ONE / (lift_k.max(Lanes::ZERO) + self.offset_k);
         let hyperbola = self.numerator_k * inverse;
-        let cop = self.constant - self.slope_per_k * lift_k + hyperbola;
+        let cop = self.numerator_k.mul_add(inverse, self.slope_per_k.mul_add(-lift_k, self.constant));
         let of_hyperbola = lift_k.above(Lanes::ZERO, hyperbola * inverse, Lanes::ZERO);
         let slope = -self.warms * (self.slope_per_k + of_hyperbola);
         let below_largest = self.largest.above(cop, slope, Lanes::ZERO);
         cop.above(self.least, below_largest, Lanes::ZERO)
-    }
-}
-
-/// How the slopes of a second change with cabin air and machine, at given states. The other reservoirs are slow: what their
-/// changes would bring about within a second is left out, on both sides of each flow, so that no heat is lost.
-struct Jacobian<'s> {
-    second: &'s Second<'s>,
-    rates: &'s Rates,
-    door_slope_w_k: Lanes,
-    /// Of the heat that the air unit is given, over the cabin temperature, in W/K.
-    given_w_k: Lanes,
-}
-
-impl Jacobian<'_> {
-    /// What so much change of the states changes in the slopes.
-    #[inline(always)]
-    fn times(&self, [_, _, cabin_k, _, _, machine_w]: &Vector) -> Vector {
-        let given_w = self.given_w_k * *cabin_k;
-        let at_once_w = given_w * self.second.air_units.at_once;
-        let mut net_w = self.second.cabin.changes_with_air_w(*cabin_k, self.door_slope_w_k);
-        net_w[2] = net_w[2] + *machine_w + at_once_w;
-        self.rates.of(net_w, given_w - at_once_w - *machine_w)
     }
 }
 
@@ -224,14 +209,14 @@ impl Rates {
         )
     }
 
-    /// The slopes that net heats and what the machine takes up make.
+    /// Where net heats bring the states in so many seconds.
     #[inline(always)]
-    fn of(&self, [heater, interior, cabin, inside, outside]: [Lanes; 5], machine_w: Lanes) -> Vector {
-        let mut slopes = [heater, interior, cabin, inside, outside, machine_w];
-        for (slope, rate) in slopes.iter_mut().zip(self.0) {
-            *slope = *slope * rate;
+    fn along(&self, x: &Vector, net_w: &Vector, seconds: f64) -> Vector {
+        let mut out = *x;
+        for (i, rate) in self.0.iter().enumerate() {
+            out[i] = net_w[i].mul_add(rate * seconds, x[i]);
         }
-        slopes
+        out
     }
 }
 
@@ -246,59 +231,68 @@ pub(crate) struct Second<'s> {
 }
 
 impl Second<'_> {
-    /// The states a second later. Two slopes, at its start and two thirds into it (Ralston's method), are all that third order
-    /// needs but for how slopes bring about slopes, which the Jacobian tells as in Rosenbrock's methods; applied twice, it makes
-    /// the method one of fourth order where the equations are linear (Hairer, Nørsett, Wanner, Solving Ordinary Differential
-    /// Equations I, section II.1, and II, section IV.7).
+    /// The states a second later. Two looks at the net heats, at its start and two thirds into it (Ralston's method), are all that
+    /// third order needs but for how slopes bring about slopes, which the Jacobian tells as in Rosenbrock's methods; applied
+    /// twice, it makes the method one of fourth order where the equations are linear (Hairer, Nørsett, Wanner, Solving Ordinary
+    /// Differential Equations I, section II.1, and II, section IV.7).
+    ///
+    /// Of the Jacobian it takes the columns of cabin air and machine. The other reservoirs are slow: what their changes would
+    /// bring about within a second is left out, on both sides of each flow, so that no heat is lost.
     #[inline(always)]
     pub fn step(&self, rates: &Rates, x: &Vector) -> Vector {
-        let start = self.slopes(rates, x);
-        let later = self.slopes(rates, &along(x, &start, 2.0 / 3.0));
+        let start = self.net_w(x);
+        let later = self.net_w(&rates.along(x, &start, 2.0 / 3.0));
         let mut bend = later;
         for (bend, start) in bend.iter_mut().zip(start) {
             *bend = *bend - start;
         }
-        let jacobian = self.jacobian(rates, x);
-        let second = jacobian.times(&bend);
-        let third = jacobian.times(&second);
-        let mut out = *x;
-        for i in 0..out.len() {
-            out[i] = out[i] + (start[i] + bend[i] * 0.75 + second[i] * 0.25 + third[i] * 0.0625);
+        let [heater, interior, air, inside, machine] = self.net_per_air_w_k(x);
+        // What changes of air and machine bring about in these two; the machine's heat goes into the air.
+        let turn = |[air_k, machine_w]: [Lanes; 2]| [air_k.mul_add(air, machine_w), air_k.mul_add(machine, -machine_w)];
+        let change = |[air_w, machine_w]: [Lanes; 2]| [air_w * rates.0[AIR], machine_w * rates.0[MACHINE]];
+        let first = change([bend[AIR], bend[MACHINE]]);
+        let second_w = turn(first);
+        let second = change(second_w);
+        let third_w = turn(second);
+        let both = |once: Lanes, twice: Lanes| twice.mul_add(0.0625, once * 0.25);
+        let air_k = both(first[0], second[0]);
+        let turns = [
+            air_k * heater,
+            air_k * interior,
+            both(second_w[0], third_w[0]),
+            air_k * inside,
+            Lanes::ZERO,
+            both(second_w[1], third_w[1]),
+        ];
+        let mut mean_w = start;
+        for i in 0..mean_w.len() {
+            mean_w[i] = start[i] + bend[i].mul_add(0.75, turns[i]);
         }
-        out
+        rates.along(x, &mean_w, 1.0)
     }
 
-    /// Eq. `odes` with eq. `steady-state-hc`, and its first-order lag, eq. `vcc-ode`.
+    /// Net heat of each reservoir (eq. `odes` with eq. `steady-state-hc`), and what the machine takes up, in W (its first-order lag,
+    /// eq. `vcc-ode`).
     #[inline(always)]
-    fn slopes(&self, rates: &Rates, x: &Vector) -> Vector {
+    fn net_w(&self, x: &Vector) -> Vector {
         let t = temperatures(x);
-        let machine_w = x[5];
+        let machine_w = x[MACHINE];
         let given_w = self.air_units.cop(t.cabin_k - self.cabin.ambient_k()) * self.air_unit_power_w;
-        let at_once_w = given_w * self.air_units.at_once;
-        let flows =
-            self.cabin.flows_abreast(&t, self.door_loss_share, machine_w + at_once_w, self.radiant_heater_power_w);
-        rates.of(flows.net_w(), given_w - at_once_w - machine_w)
+        let air_unit_w = given_w.mul_add(self.air_units.at_once, machine_w);
+        let [heater, interior, cabin, inside, outside] =
+            self.cabin.net_w(&t, self.door_loss_share, air_unit_w, self.radiant_heater_power_w);
+        [heater, interior, cabin, inside, outside, given_w.mul_add(self.air_units.lags, -machine_w)]
     }
 
-    /// Curves without a formula of their own here count as level.
+    /// How these change with the cabin air, in W/K: of all but the outside of the shell. COP curves without a formula of their own
+    /// here count as level.
     #[inline(always)]
-    fn jacobian<'s>(&'s self, rates: &'s Rates, x: &Vector) -> Jacobian<'s> {
-        let t = temperatures(x);
-        let cop_per_k = self.air_units.cop_slope(t.cabin_k - self.cabin.ambient_k());
-        Jacobian {
-            second: self,
-            rates,
-            door_slope_w_k: self.cabin.door_slope_w_k(t.cabin_k, self.door_loss_share),
-            given_w_k: cop_per_k * self.air_unit_power_w,
-        }
+    fn net_per_air_w_k(&self, x: &Vector) -> [Lanes; 5] {
+        let cabin_k = x[AIR];
+        let given_w_k = self.air_units.cop_slope(cabin_k - self.cabin.ambient_k()) * self.air_unit_power_w;
+        let door_slope_w_k = self.cabin.door_slope_w_k(cabin_k, self.door_loss_share);
+        let [heater, interior, cabin, inside] = self.cabin.net_per_air_w_k(door_slope_w_k);
+        let cabin = given_w_k.mul_add(self.air_units.at_once, cabin);
+        [heater, interior, cabin, inside, given_w_k * self.air_units.lags]
     }
-}
-
-#[inline(always)]
-fn along(x: &Vector, slopes: &Vector, seconds: f64) -> Vector {
-    let mut out = *x;
-    for (x, slope) in out.iter_mut().zip(slopes) {
-        *x = *x + *slope * seconds;
-    }
-    out
 }

@@ -95,7 +95,7 @@ impl Sums {
         self.energy_j = self.energy_j + power_w;
         self.saturated_s = self.saturated_s + demand.held_back;
         let error_k = cabin - self.prescribed_k;
-        self.square_error = self.square_error + error_k * error_k * self.tracked;
+        self.square_error = (error_k * error_k).mul_add(self.tracked, self.square_error);
         self.tracked_s = self.tracked_s + self.tracked;
     }
 

@@ -12,7 +12,7 @@ pub(crate) const LANES: usize = 4;
 pub(crate) type Abreast = Lanes<LANES>;
 
 /// A search for states. It is compiled once for each set of vector instructions, and runs with what the machine has; all of
-/// them round alike, as none contracts a product and a sum into one operation.
+/// them round alike, as a product and a sum are one operation where the code says so, and nowhere else.
 pub(crate) struct Search<'a, 'c> {
     pub cabin: &'a Cabin<'c>,
     pub target: Target<Abreast>,

@@ -147,7 +147,7 @@ impl Loops {
     /// What the air unit would be asked for without limits, in the direction of its mode.
     #[inline(always)]
     fn wanted_w(&self, cabin: Lanes) -> Lanes {
-        self.sign * (self.integral_w + (self.setpoint_k - cabin) * self.gains[0].w_k)
+        self.sign * (self.setpoint_k - cabin).mul_add(self.gains[0].w_k, self.integral_w)
     }
 
     /// Lets every lane that may not stay in its mode choose anew.
@@ -233,8 +233,8 @@ impl Gain {
     /// The command within `low … high`, and how far it is held back by them.
     #[inline(always)]
     fn command_w(self, error_k: Lanes, integral_w: &mut Lanes, low: Lanes, high: Lanes) -> (Lanes, Lanes) {
-        let next_w = *integral_w + error_k * self.w_k_s;
-        let wanted_w = error_k * self.w_k + next_w;
+        let next_w = error_k.mul_add(self.w_k_s, *integral_w);
+        let wanted_w = error_k.mul_add(self.w_k, next_w);
         let command_w = wanted_w.max(low).min(high);
         let beyond_w = wanted_w - command_w;
         *integral_w = (beyond_w * error_k).above(Lanes::ZERO, *integral_w, next_w);
