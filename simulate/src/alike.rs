@@ -9,7 +9,7 @@ use cabin::{Design, OperatingMode};
 use rayon::prelude::*;
 
 use crate::control::Law;
-use crate::lanes::LANES;
+use crate::lanes::{FEW, LANES};
 use crate::{Dynamics, Mission, PowerLimits, Start, Summary, Variant, simulate};
 
 /// What a drive has used of its design.
@@ -32,31 +32,54 @@ pub fn simulate_distinct(
 ) -> Option<Vec<Summary>> {
     let mut summaries: Vec<Option<Summary>> = vec![None; variants.len()];
     loop {
-        // The first of those that are told alike.
-        let mut firsts: Vec<usize> = Vec::new();
-        for (place, variant) in variants.iter().enumerate().filter(|(place, _)| summaries[*place].is_none()) {
-            if !firsts.iter().any(|first| are_told_alike(&variants[*first], variant)) {
-                firsts.push(place);
-            }
-        }
-        if firsts.is_empty() {
+        let chosen = next(variants, &summaries, dynamics);
+        if chosen.is_empty() {
             return summaries.into_iter().collect();
         }
-        let distinct: Vec<Variant<'_>> = firsts.iter().map(|first| variants[*first]).collect();
+        let distinct: Vec<Variant<'_>> = chosen.iter().map(|place| variants[*place]).collect();
         let abreast = |some: &[Variant<'_>]| simulate(mission, dynamics, some);
         let driven: Vec<Vec<Summary>> = distinct.par_chunks(LANES).map(abreast).collect::<Option<_>>()?;
-        for (first, summary) in firsts.into_iter().zip(driven.into_iter().flatten()) {
-            let drives = |variant: &Variant<'_>| {
-                are_told_alike(&variants[first], variant) && serves(&variants[first], summary.used, variant, dynamics)
-            };
-            for (place, variant) in variants.iter().enumerate().skip(first + 1) {
-                if summaries[place].is_none() && drives(variant) {
+        for (place, summary) in chosen.iter().zip(driven.into_iter().flatten()) {
+            summaries[*place] = Some(summary);
+        }
+        for one in chosen {
+            let Some(summary) = summaries[one].clone() else { continue };
+            for (place, variant) in variants.iter().enumerate() {
+                let is_open = summaries[place].is_none() && are_told_alike(&variants[one], variant);
+                if is_open && serves(&variants[one], summary.used, variant, dynamics) {
                     summaries[place] = Some(summary.beside(variant.segments));
                 }
             }
-            summaries[first] = Some(summary);
         }
     }
+}
+
+/// The variants that are driven next: the first of those that are told alike, and in lanes that would be left over those that
+/// differ from them in what the unit does, which may have to be driven besides.
+fn next(variants: &[Variant<'_>], summaries: &[Option<Summary>], dynamics: &Dynamics) -> Vec<usize> {
+    let open = || (0..variants.len()).filter(|place| summaries[*place].is_none());
+    let mut chosen: Vec<usize> = Vec::new();
+    for place in open() {
+        if !chosen.iter().any(|one| are_told_alike(&variants[*one], &variants[place])) {
+            chosen.push(place);
+        }
+    }
+    let lanes = chosen.len().next_multiple_of(FEW);
+    let heats_and_cools = Used { heating: true, cooling: true, limit: false };
+    for place in open() {
+        if chosen.len() == lanes {
+            break;
+        }
+        let is_served = |one: &usize| {
+            *one == place
+                || are_told_alike(&variants[*one], &variants[place])
+                    && serves(&variants[*one], heats_and_cools, &variants[place], dynamics)
+        };
+        if !chosen.iter().any(is_served) {
+            chosen.push(place);
+        }
+    }
+    chosen
 }
 
 /// Whether two variants begin alike and are told the same by who controls them, and are judged by the same windows.

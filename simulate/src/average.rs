@@ -1,8 +1,6 @@
 //! The vote of the last 15 minutes, and how far it ever is from neutral.
 
-use cabin::Real;
-
-use crate::lanes::{LANES, Lanes};
+use cabin::{Lanes, Real};
 
 /// Seconds between two votes; in between they are taken as linear.
 pub(crate) const VOTE_S: usize = 5;
@@ -14,27 +12,27 @@ const NODES: usize = WINDOW_S / VOTE_S;
 
 /// The trailing mean over the last [`WINDOW_S`] seconds, or over as many as there are.
 #[derive(Debug, Clone)]
-pub(crate) struct TrailingVotes {
+pub(crate) struct TrailingVotes<const W: usize> {
     /// The votes, the oldest at `next` once the window is full.
-    nodes: [Lanes; NODES],
+    nodes: [Lanes<W>; NODES],
     next: usize,
     /// The newest vote, and the one just before the oldest.
-    last: Lanes,
-    before: Lanes,
+    last: Lanes<W>,
+    before: Lanes<W>,
     seconds: usize,
-    sum: Lanes,
+    sum: Lanes<W>,
     /// Largest absolute mean while somebody is on board.
-    pub max_abs: Lanes,
+    pub max_abs: Lanes<W>,
     /// Whether anybody ever was.
     pub any_on_board: bool,
 }
 
 /// The votes of [`VOTE_S`] seconds, or their trailing means.
-pub(crate) type Votes = [Lanes; VOTE_S];
+pub(crate) type Votes<const W: usize> = [Lanes<W>; VOTE_S];
 
-impl TrailingVotes {
+impl<const W: usize> TrailingVotes<W> {
     /// Begins with the vote of the first instant.
-    pub fn new(first: Lanes) -> Self {
+    pub fn new(first: Lanes<W>) -> Self {
         Self {
             nodes: [Lanes::ZERO; NODES],
             next: 0,
@@ -49,7 +47,7 @@ impl TrailingVotes {
 
     /// The votes of the next `seconds`, the last of which has the given one.
     #[inline(always)]
-    pub fn up_to(&self, vote: Lanes, seconds: usize) -> Votes {
+    pub fn up_to(&self, vote: Lanes<W>, seconds: usize) -> Votes<W> {
         let mut votes = [vote; VOTE_S];
         for (j, between) in votes.iter_mut().enumerate().take(seconds) {
             *between = (vote - self.last).mul_add((j + 1) as f64 / seconds as f64, self.last);
@@ -60,7 +58,7 @@ impl TrailingVotes {
     /// Takes the votes of [`VOTE_S`] seconds, or of fewer at the very end, and gives their trailing means; `on_board` says of each
     /// second how many passengers are.
     #[inline(always)]
-    pub fn push(&mut self, votes: &Votes, on_board: &[f64]) -> Votes {
+    pub fn push(&mut self, votes: &Votes<W>, on_board: &[f64]) -> Votes<W> {
         let mut means = *votes;
         let is_full = self.seconds >= WINDOW_S;
         let oldest = if is_full { self.nodes[self.next] } else { Lanes::ZERO };
@@ -103,7 +101,7 @@ impl TrailingVotes {
 
     /// Largest absolute mean of a lane; `None` where nobody was ever on board.
     pub fn largest(&self, lane: usize) -> Option<f64> {
-        debug_assert!(lane < LANES);
+        debug_assert!(lane < W);
         self.any_on_board.then(|| self.max_abs.0[lane])
     }
 }
@@ -120,7 +118,7 @@ mod tests {
             let node = second / VOTE_S * VOTE_S;
             vote(node) + (vote(node + VOTE_S) - vote(node)) * (second - node) as f64 / VOTE_S as f64
         };
-        let mut trailing = TrailingVotes::new(Lanes::splat(vote(0)));
+        let mut trailing = TrailingVotes::new(Lanes::<8>::splat(vote(0)));
         let mut largest: f64 = 0.0;
         for block in 0..2000 {
             let end = (block + 1) * VOTE_S;
@@ -140,6 +138,6 @@ mod tests {
             }
         }
         assert!((trailing.largest(7).unwrap_or(0.0) - largest).abs() < 1e-9);
-        assert_eq!(TrailingVotes::new(Lanes::ONE).largest(0), None);
+        assert_eq!(TrailingVotes::new(Lanes::<8>::ONE).largest(0), None);
     }
 }

@@ -1,15 +1,15 @@
-//! The loop: a mission, second by second, in eight variants abreast.
+//! The loop: a mission, second by second, in eight variants abreast, or four where few are left over.
 //!
 //! They share weather, sun, doors and passengers; states, setpoints, limits and devices are numbers of the lanes. No lane sees
 //! another, so that a variant comes out the same to the bit in whatever company.
 
-use cabin::{Cabin, Heating, OperatingMode, Real, Temperatures};
+use cabin::{Cabin, Heating, Lanes, OperatingMode, Real, Temperatures};
 use pulp::{Arch, Simd, WithSimd};
 
 use crate::average::{FIRST_S, TrailingVotes, VOTE_S, Votes};
 use crate::control::{Demand, Loops};
 use crate::judge::Judge;
-use crate::lanes::{LANES, Lanes};
+use crate::lanes::{FEW, LANES};
 use crate::model::{AirUnits, Rates, Second, Vector, temperatures};
 use crate::summary::Sums;
 use crate::{BusState, Commands, Dynamics, Instant, Mission, Start, Summary, Used, Variant, depot_temperature_k};
@@ -47,8 +47,6 @@ fn abreast(
     }
     let mut summaries = Vec::with_capacity(variants.len());
     for (n, some) in variants.chunks(LANES).enumerate() {
-        // Lanes that are left over drive the last variant once more.
-        let lanes = std::array::from_fn(|lane| some[lane.min(some.len() - 1)]);
         let mut of_lane = record.as_mut().map(|record| {
             move |lane: usize, now: &Instant| {
                 if lane < some.len() {
@@ -57,25 +55,39 @@ fn abreast(
             }
         });
         let of_lane = of_lane.as_mut().map(|record| record as &mut Record<'_>);
-        let mut judge = Judge::new(&lanes);
-        let drive = Drive::new(mission, dynamics, lanes);
-        let end = Arch::new().dispatch(Run { drive, judge: &mut judge, record: of_lane });
-        let summary = |(lane, variant): (usize, &Variant<'_>)| end.summary(lane, mission, variant, &judge);
-        summaries.extend(some.iter().enumerate().map(summary));
+        summaries.extend(match some.len() {
+            ..=FEW => together::<FEW>(mission, dynamics, some, of_lane),
+            _ => together::<LANES>(mission, dynamics, some, of_lane),
+        });
     }
     Some(summaries)
 }
 
+/// Some variants, at most as many as there are lanes. Those that are left over drive the last one once more.
+fn together<'r, const W: usize>(
+    mission: &Mission<'_, '_>,
+    dynamics: &Dynamics,
+    some: &[Variant<'_>],
+    record: Option<&'r mut Record<'r>>,
+) -> Vec<Summary> {
+    let lanes: [Variant<'_>; W] = std::array::from_fn(|lane| some[lane.min(some.len() - 1)]);
+    let mut judge = Judge::new(&lanes);
+    let drive = Drive::new(mission, dynamics, lanes);
+    let end = Arch::new().dispatch(Run { drive, judge: &mut judge, record });
+    let summary = |(lane, variant): (usize, &Variant<'_>)| end.summary(lane, mission, variant, &judge);
+    some.iter().enumerate().map(summary).collect()
+}
+
 /// A drive that is compiled once for each set of vector instructions, and runs with what the machine has. All of them round
 /// alike: a product and a sum are one operation where the code says so, and nowhere else.
-struct Run<'a, 'm, 'v, 'r> {
-    drive: Drive<'a, 'm, 'v>,
-    judge: &'a mut Judge,
+struct Run<'a, 'm, 'v, 'r, const W: usize> {
+    drive: Drive<'a, 'm, 'v, W>,
+    judge: &'a mut Judge<W>,
     record: Option<&'r mut Record<'r>>,
 }
 
-impl WithSimd for Run<'_, '_, '_, '_> {
-    type Output = End;
+impl<const W: usize> WithSimd for Run<'_, '_, '_, '_, W> {
+    type Output = End<W>;
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> Self::Output {
@@ -83,30 +95,30 @@ impl WithSimd for Run<'_, '_, '_, '_> {
     }
 }
 
-/// Eight variants on their way.
-struct Drive<'a, 'm, 'v> {
+/// Variants on their way.
+struct Drive<'a, 'm, 'v, const W: usize> {
     mission: &'a Mission<'m, 'v>,
     rates: Rates,
-    variants: [Variant<'a>; LANES],
-    x: Vector,
-    loops: Loops,
-    air_units: AirUnits<'a>,
-    sums: Sums,
+    variants: [Variant<'a>; W],
+    x: Vector<W>,
+    loops: Loops<W>,
+    air_units: AirUnits<'a, W>,
+    sums: Sums<W>,
     /// [`Cabin::door_loss_share`] with air curtains.
-    with_curtain: Lanes,
+    with_curtain: Lanes<W>,
 }
 
 /// All lanes as a drive ends. What it adds up in every second is only moved here: a reference to it would keep it in memory
 /// instead of registers, which costs a fifth of the time.
-struct End {
-    x: Vector,
-    sums: Sums,
-    max_abs_pmv_15min: [Option<f64>; LANES],
-    used: [Used; LANES],
+struct End<const W: usize> {
+    x: Vector<W>,
+    sums: Sums<W>,
+    max_abs_pmv_15min: [Option<f64>; W],
+    used: [Used; W],
 }
 
-impl End {
-    fn summary(&self, lane: usize, mission: &Mission<'_, '_>, variant: &Variant<'_>, judge: &Judge) -> Summary {
+impl<const W: usize> End<W> {
+    fn summary(&self, lane: usize, mission: &Mission<'_, '_>, variant: &Variant<'_>, judge: &Judge<W>) -> Summary {
         let seconds = mission.segments as u32 * mission.segment_s;
         let votes = (self.max_abs_pmv_15min[lane], judge.rides(lane, variant.windows.len()));
         self.sums.summary(lane, seconds, variant.segments, votes, (self.used[lane], BusState::of(&self.x, lane)))
@@ -115,19 +127,19 @@ impl End {
 
 /// What a second of all lanes looks like, for whoever records it.
 #[derive(Clone, Copy)]
-struct Past {
-    x: Vector,
-    demand: Demand,
-    air_curtain_power_w: Lanes,
-    curtain: Lanes,
+struct Past<const W: usize> {
+    x: Vector<W>,
+    demand: Demand<W>,
+    air_curtain_power_w: Lanes<W>,
+    curtain: Lanes<W>,
     /// Sign of the mode, and setpoint in K.
-    followed: (Lanes, Lanes),
+    followed: (Lanes<W>, Lanes<W>),
     passengers: f64,
     door_open_fraction: f64,
 }
 
-impl<'a, 'm, 'v> Drive<'a, 'm, 'v> {
-    fn new(mission: &'a Mission<'m, 'v>, dynamics: &Dynamics, variants: [Variant<'a>; LANES]) -> Self {
+impl<'a, 'm, 'v, const W: usize> Drive<'a, 'm, 'v, W> {
+    fn new(mission: &'a Mission<'m, 'v>, dynamics: &Dynamics, variants: [Variant<'a>; W]) -> Self {
         let limits = variants.map(|v| v.scenario.limits.of(v.design, dynamics));
         let mut loops = Loops::new(dynamics, limits);
         let mut x = [Lanes::ZERO; 6];
@@ -151,7 +163,7 @@ impl<'a, 'm, 'v> Drive<'a, 'm, 'v> {
     }
 
     #[inline(always)]
-    fn run<'r>(mut self, judge: &mut Judge, mut record: Option<&'r mut Record<'r>>) -> End {
+    fn run<'r>(mut self, judge: &mut Judge<W>, mut record: Option<&'r mut Record<'r>>) -> End<W> {
         let mission = self.mission;
         let mut clothes = mission.minutes[0].clothes(&temperatures(&self.x));
         let first = mission.minutes[0].step_vote(&temperatures(&self.x), &mut clothes);
@@ -217,7 +229,7 @@ impl<'a, 'm, 'v> Drive<'a, 'm, 'v> {
     fn begin_minute(&mut self, second: u32, cabin: &Cabin<'_>) {
         let segment_s = self.mission.segment_s;
         let begins_segment = second.is_multiple_of(segment_s);
-        for lane in 0..LANES {
+        for lane in 0..W {
             let variant = &self.variants[lane];
             if begins_segment || variant.law.is_causal() {
                 let segment = &variant.segments[(second / segment_s) as usize];
@@ -243,7 +255,7 @@ impl<'a, 'm, 'v> Drive<'a, 'm, 'v> {
 
     /// A second passes.
     #[inline(always)]
-    fn second(&mut self, cabin: &Cabin<'_>) -> Demand {
+    fn second(&mut self, cabin: &Cabin<'_>) -> Demand<W> {
         if self.loops.want_another_mode(self.x[2]) {
             self.loops.choose_modes(self.x[2]);
             self.follow();
@@ -275,10 +287,15 @@ fn in_depot(minute: &Cabin<'_>) -> BusState {
     BusState { temperatures, machine_heat_w: 0.0 }
 }
 
-fn tell(from_s: u32, past: &[Option<Past>; VOTE_S], [votes, means]: [&Votes; 2], record: &mut Record<'_>) {
+fn tell<const W: usize>(
+    from_s: u32,
+    past: &[Option<Past<W>>; VOTE_S],
+    [votes, means]: [&Votes<W>; 2],
+    record: &mut Record<'_>,
+) {
     for (j, past) in past.iter().enumerate() {
         let Some(past) = past else { continue };
-        for lane in 0..LANES {
+        for lane in 0..W {
             let commands = Commands {
                 air_unit_power_w: past.demand.air_unit_power_w.0[lane],
                 radiant_heater_power_w: past.demand.radiant_heater_power_w.0[lane],
@@ -359,7 +376,7 @@ mod tests {
         let variant =
             |lane: usize| Variant { windows: &windows, ..Replay::ALL[lane % 4].of(&designs[lane / 4], &segments) };
         let variants = std::array::from_fn(variant);
-        let driven = |way: fn(Run<'_, '_, '_, '_>) -> End| {
+        let driven = |way: fn(Run<'_, '_, '_, '_, LANES>) -> End<LANES>| {
             let mut judge = Judge::new(&variants);
             let drive = Drive::new(&mission, &Dynamics::default(), variants);
             let end = way(Run { drive, judge: &mut judge, record: None });
@@ -367,6 +384,8 @@ mod tests {
         };
         let with_all = driven(|run| Arch::new().dispatch(run));
         assert_eq!(with_all, driven(|run| run.with_simd(pulp::Scalar)));
+        // As few as four come out as eight do.
+        assert_eq!(with_all[..FEW], together::<FEW>(&mission, &Dynamics::default(), &variants[..FEW], None));
         assert_ne!(with_all[0], with_all[4]);
         assert!(with_all.iter().any(|s| s.rides.hours_outside[0] > 0.0));
     }

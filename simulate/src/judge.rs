@@ -1,10 +1,9 @@
 //! How passengers fare on a mission: their mean vote, and how long they ride outside comfort windows.
 
-use cabin::Real;
+use cabin::{Lanes, Real};
 
 use crate::Variant;
 use crate::average::Votes;
-use crate::lanes::{LANES, Lanes};
 
 /// How the passengers of a mission fare, by the vote of their last 15 minutes.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,28 +18,28 @@ pub struct Rides {
 
 /// Sums over all seconds, each weighted by its passengers. What is judged is the vote of the last 15 minutes, a typical ride.
 #[derive(Debug, Clone)]
-pub(crate) struct Judge {
-    windows: Vec<Window>,
+pub(crate) struct Judge<const W: usize> {
+    windows: Vec<Window<W>>,
     passenger_s: f64,
-    abs_vote: Lanes,
+    abs_vote: Lanes<W>,
 }
 
 /// A window of each lane; one that a lane does not have is never left.
 #[derive(Debug, Clone, Copy)]
-struct Window {
-    low: Lanes,
-    high: Lanes,
-    outside_s: Lanes,
+struct Window<const W: usize> {
+    low: Lanes<W>,
+    high: Lanes<W>,
+    outside_s: Lanes<W>,
 }
 
 const HOUR_S: f64 = 3600.0;
 
-impl Judge {
-    pub fn new(variants: &[Variant<'_>; LANES]) -> Self {
+impl<const W: usize> Judge<W> {
+    pub fn new(variants: &[Variant<'_>; W]) -> Self {
         let most = variants.iter().map(|v| v.windows.len()).max().unwrap_or(0);
         let window = |place: usize| {
             let limit = |of: fn(&cabin::ComfortWindow) -> f64, none: f64| {
-                cabin::Lanes(std::array::from_fn(|lane| variants[lane].windows.get(place).map_or(none, of)))
+                Lanes(std::array::from_fn(|lane| variants[lane].windows.get(place).map_or(none, of)))
             };
             Window {
                 low: limit(|w| w.pmv_min(), f64::NEG_INFINITY),
@@ -53,7 +52,7 @@ impl Judge {
 
     /// Adds the 15-minute votes of some seconds, and who is on board in each.
     #[inline(always)]
-    pub fn add(&mut self, votes: &Votes, passengers: &[f64]) {
+    pub fn add(&mut self, votes: &Votes<W>, passengers: &[f64]) {
         for (vote, passengers) in votes.iter().zip(passengers) {
             if *passengers == 0.0 {
                 continue;

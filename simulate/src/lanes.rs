@@ -3,5 +3,5 @@
 /// Variants that are simulated abreast.
 pub const LANES: usize = 8;
 
-/// A number of each of them.
-pub(crate) type Lanes = cabin::Lanes<LANES>;
+/// As many where few are left over, which takes less than eight do.
+pub(crate) const FEW: usize = 4;

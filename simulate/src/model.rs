@@ -1,9 +1,8 @@
 //! The dynamic model over one second, of all lanes.
 
-use cabin::{Cabin, Cop, Design, Heating, OperatingMode, Real, Temperatures};
+use cabin::{Cabin, Cop, Design, Heating, Lanes, OperatingMode, Real, Temperatures};
 
 use crate::Dynamics;
-use crate::lanes::{LANES, Lanes};
 
 /// The states of the model.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,7 +32,7 @@ pub fn depot_temperature_k(ambient_k: f64) -> f64 {
 }
 
 /// Heaters, interior, cabin, inside and outside of the shell in K, heat of the machine in W; or what drives them, all in W.
-pub(crate) type Vector = [Lanes; 6];
+pub(crate) type Vector<const W: usize> = [Lanes<W>; 6];
 
 /// Places of cabin air and machine in it.
 const AIR: usize = 2;
@@ -41,7 +40,9 @@ const MACHINE: usize = 5;
 
 /// The temperatures of a vector.
 #[inline(always)]
-pub(crate) fn temperatures(&[heater, interior, cabin, inside, outside, _]: &Vector) -> Temperatures<Lanes> {
+pub(crate) fn temperatures<const W: usize>(
+    &[heater, interior, cabin, inside, outside, _]: &Vector<W>,
+) -> Temperatures<Lanes<W>> {
     Temperatures {
         cabin_k: cabin,
         interior_k: interior,
@@ -53,7 +54,7 @@ pub(crate) fn temperatures(&[heater, interior, cabin, inside, outside, _]: &Vect
 
 impl BusState {
     /// The states of a lane.
-    pub(crate) fn of(x: &Vector, lane: usize) -> Self {
+    pub(crate) fn of<const W: usize>(x: &Vector<W>, lane: usize) -> Self {
         let [heater, interior, cabin, inside, outside, machine_heat_w] = x.map(|x| x.0[lane]);
         let temperatures = Temperatures {
             cabin_k: cabin,
@@ -65,7 +66,7 @@ impl BusState {
         Self { temperatures, machine_heat_w }
     }
 
-    pub(crate) fn put(&self, x: &mut Vector, lane: usize) {
+    pub(crate) fn put<const W: usize>(&self, x: &mut Vector<W>, lane: usize) {
         let t = &self.temperatures;
         let all =
             [t.radiant_heater_k, t.interior_k, t.cabin_k, t.shell_inside_k, t.shell_outside_k, self.machine_heat_w];
@@ -78,33 +79,33 @@ impl BusState {
 /// The air units in their present modes. A resistive heater gives its heat at once; a heat pump and the air conditioning lag
 /// (paper, eq. `vcc-ode`).
 #[derive(Debug, Clone)]
-pub(crate) struct AirUnits<'d> {
-    designs: [&'d Design; LANES],
-    modes: [OperatingMode; LANES],
+pub(crate) struct AirUnits<'d, const W: usize> {
+    designs: [&'d Design; W],
+    modes: [OperatingMode; W],
     /// Whether any curve has no formula of its own here.
     any_other: bool,
-    others: [Option<&'d Cop>; LANES],
+    others: [Option<&'d Cop>; W],
     /// 1 where the lift is that of heating, −1 where it is that of cooling.
-    warms: Lanes,
+    warms: Lanes<W>,
     /// COP = clamp(constant − slope · lift + numerator / (max(lift, 0) + offset)).
-    constant: Lanes,
-    slope_per_k: Lanes,
-    numerator_k: Lanes,
-    offset_k: Lanes,
-    least: Lanes,
-    largest: Lanes,
+    constant: Lanes<W>,
+    slope_per_k: Lanes<W>,
+    numerator_k: Lanes<W>,
+    offset_k: Lanes<W>,
+    least: Lanes<W>,
+    largest: Lanes<W>,
     /// 1 where heat comes at once, 0 where it lags; and the other way round.
-    at_once: Lanes,
-    lags: Lanes,
+    at_once: Lanes<W>,
+    lags: Lanes<W>,
 }
 
-impl<'d> AirUnits<'d> {
-    pub fn new(designs: [&'d Design; LANES], modes: [OperatingMode; LANES]) -> Self {
+impl<'d, const W: usize> AirUnits<'d, W> {
+    pub fn new(designs: [&'d Design; W], modes: [OperatingMode; W]) -> Self {
         let mut units = Self {
             designs,
             modes,
             any_other: false,
-            others: [None; LANES],
+            others: [None; W],
             warms: Lanes::ONE,
             constant: Lanes::ZERO,
             slope_per_k: Lanes::ZERO,
@@ -120,7 +121,7 @@ impl<'d> AirUnits<'d> {
     }
 
     /// Follows the modes.
-    pub fn follow(&mut self, modes: &[OperatingMode; LANES]) {
+    pub fn follow(&mut self, modes: &[OperatingMode; W]) {
         if self.modes != *modes {
             self.modes = *modes;
             self.refresh();
@@ -128,7 +129,7 @@ impl<'d> AirUnits<'d> {
     }
 
     fn refresh(&mut self) {
-        for lane in 0..LANES {
+        for lane in 0..W {
             let design = self.designs[lane];
             let cools = self.modes[lane] == OperatingMode::Cooling;
             let cop = if cools { &design.cooling_cop } else { &design.heating_cop };
@@ -161,7 +162,7 @@ impl<'d> AirUnits<'d> {
 
     /// COP over cabin temperature less ambient temperature in K.
     #[inline(always)]
-    fn cop(&self, above_ambient_k: Lanes) -> Lanes {
+    fn cop(&self, above_ambient_k: Lanes<W>) -> Lanes<W> {
         let lift_k = self.warms * above_ambient_k;
         let inverse = Lanes::ONE / (lift_k.max(Lanes::ZERO) + self.offset_k);
         let linear = self.slope_per_k.mul_add(-lift_k, self.constant);
@@ -178,7 +179,7 @@ impl<'d> AirUnits<'d> {
 
     /// Slope of the COP over cabin temperature in 1/K; 0 at its bounds.
     #[inline(always)]
-    fn cop_slope(&self, above_ambient_k: Lanes) -> Lanes {
+    fn cop_slope(&self, above_ambient_k: Lanes<W>) -> Lanes<W> {
         let lift_k = self.warms * above_ambient_k;
         let inverse = Lanes::ONE / (lift_k.max(Lanes::ZERO) + self.offset_k);
         let hyperbola = self.numerator_k * inverse;
@@ -211,7 +212,7 @@ impl Rates {
 
     /// Where net heats bring the states in so many seconds.
     #[inline(always)]
-    fn along(&self, x: &Vector, net_w: &Vector, seconds: f64) -> Vector {
+    fn along<const W: usize>(&self, x: &Vector<W>, net_w: &Vector<W>, seconds: f64) -> Vector<W> {
         let mut out = *x;
         for (i, rate) in self.0.iter().enumerate() {
             out[i] = net_w[i].mul_add(rate * seconds, x[i]);
@@ -221,25 +222,25 @@ impl Rates {
 }
 
 /// What acts on the states during a second.
-pub(crate) struct Second<'s> {
+pub(crate) struct Second<'s, const W: usize> {
     pub cabin: &'s Cabin<'s>,
-    pub air_units: &'s AirUnits<'s>,
-    pub air_unit_power_w: Lanes,
-    pub radiant_heater_power_w: Lanes,
+    pub air_units: &'s AirUnits<'s, W>,
+    pub air_unit_power_w: Lanes<W>,
+    pub radiant_heater_power_w: Lanes<W>,
     /// [`Cabin::door_loss_share`] of each lane.
-    pub door_loss_share: Lanes,
+    pub door_loss_share: Lanes<W>,
 }
 
-impl Second<'_> {
-    /// The states a second later. Two looks at the net heats, at its start and two thirds into it (Ralston's method), are all that
-    /// third order needs but for how slopes bring about slopes, which the Jacobian tells as in Rosenbrock's methods; applied
-    /// twice, it makes the method one of fourth order where the equations are linear (Hairer, Nørsett, Wanner, Solving Ordinary
-    /// Differential Equations I, section II.1, and II, section IV.7).
+impl<const W: usize> Second<'_, W> {
+    /// The states a second later. Two looks at the net heats, at its start and two thirds into it (Ralston's method), are all
+    /// that third order needs but for how slopes bring about slopes, which the Jacobian tells as in Rosenbrock's methods;
+    /// applied twice, it makes the method one of fourth order where the equations are linear (Hairer, Nørsett, Wanner, Solving
+    /// Ordinary Differential Equations I, section II.1, and II, section IV.7).
     ///
     /// Of the Jacobian it takes the columns of cabin air and machine. The other reservoirs are slow: what their changes would
     /// bring about within a second is left out, on both sides of each flow, so that no heat is lost.
     #[inline(always)]
-    pub fn step(&self, rates: &Rates, x: &Vector) -> Vector {
+    pub fn step(&self, rates: &Rates, x: &Vector<W>) -> Vector<W> {
         let start = self.net_w(x);
         let later = self.net_w(&rates.along(x, &start, 2.0 / 3.0));
         let mut bend = later;
@@ -248,13 +249,14 @@ impl Second<'_> {
         }
         let [heater, interior, air, inside, machine] = self.net_per_air_w_k(x);
         // What changes of air and machine bring about in these two; the machine's heat goes into the air.
-        let turn = |[air_k, machine_w]: [Lanes; 2]| [air_k.mul_add(air, machine_w), air_k.mul_add(machine, -machine_w)];
-        let change = |[air_w, machine_w]: [Lanes; 2]| [air_w * rates.0[AIR], machine_w * rates.0[MACHINE]];
+        let turn =
+            |[air_k, machine_w]: [Lanes<W>; 2]| [air_k.mul_add(air, machine_w), air_k.mul_add(machine, -machine_w)];
+        let change = |[air_w, machine_w]: [Lanes<W>; 2]| [air_w * rates.0[AIR], machine_w * rates.0[MACHINE]];
         let first = change([bend[AIR], bend[MACHINE]]);
         let second_w = turn(first);
         let second = change(second_w);
         let third_w = turn(second);
-        let both = |once: Lanes, twice: Lanes| twice.mul_add(0.0625, once * 0.25);
+        let both = |once: Lanes<W>, twice: Lanes<W>| twice.mul_add(0.0625, once * 0.25);
         let air_k = both(first[0], second[0]);
         let turns = [
             air_k * heater,
@@ -271,10 +273,10 @@ impl Second<'_> {
         rates.along(x, &mean_w, 1.0)
     }
 
-    /// Net heat of each reservoir (eq. `odes` with eq. `steady-state-hc`), and what the machine takes up, in W (its first-order lag,
-    /// eq. `vcc-ode`).
+    /// Net heat of each reservoir (eq. `odes` with eq. `steady-state-hc`), and what the machine takes up, in W (its first-order
+    /// lag, eq. `vcc-ode`).
     #[inline(always)]
-    fn net_w(&self, x: &Vector) -> Vector {
+    fn net_w(&self, x: &Vector<W>) -> Vector<W> {
         let t = temperatures(x);
         let machine_w = x[MACHINE];
         let given_w = self.air_units.cop(t.cabin_k - self.cabin.ambient_k()) * self.air_unit_power_w;
@@ -284,10 +286,10 @@ impl Second<'_> {
         [heater, interior, cabin, inside, outside, given_w.mul_add(self.air_units.lags, -machine_w)]
     }
 
-    /// How these change with the cabin air, in W/K: of all but the outside of the shell. COP curves without a formula of their own
-    /// here count as level.
+    /// How these change with the cabin air, in W/K: of all but the outside of the shell. COP curves without a formula of their
+    /// own here count as level.
     #[inline(always)]
-    fn net_per_air_w_k(&self, x: &Vector) -> [Lanes; 5] {
+    fn net_per_air_w_k(&self, x: &Vector<W>) -> [Lanes<W>; 5] {
         let cabin_k = x[AIR];
         let given_w_k = self.air_units.cop_slope(cabin_k - self.cabin.ambient_k()) * self.air_unit_power_w;
         let door_slope_w_k = self.cabin.door_slope_w_k(cabin_k, self.door_loss_share);

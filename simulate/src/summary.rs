@@ -1,10 +1,8 @@
 //! What a simulation comes to, added up second by second.
 
-use cabin::OperatingMode;
-use cabin::Real;
+use cabin::{Lanes, OperatingMode, Real};
 
 use crate::control::Demand;
-use crate::lanes::{LANES, Lanes};
 use crate::{BusState, Rides, Segment, Used};
 
 /// What a simulation comes to, beside what the steady-state optima foresee.
@@ -53,18 +51,18 @@ fn max_abs_vote(segments: &[Segment]) -> f64 {
 
 /// What is added up over a mission.
 #[derive(Debug, Clone)]
-pub(crate) struct Sums {
-    energy_j: Lanes,
-    saturated_s: Lanes,
-    square_error: Lanes,
+pub(crate) struct Sums<const W: usize> {
+    energy_j: Lanes<W>,
+    saturated_s: Lanes<W>,
+    square_error: Lanes<W>,
     /// Seconds in which the optimum has the air unit on.
-    tracked_s: Lanes,
+    tracked_s: Lanes<W>,
     /// For now: 1 where it has, and the cabin temperature that it prescribes in K.
-    tracked: Lanes,
-    prescribed_k: Lanes,
+    tracked: Lanes<W>,
+    prescribed_k: Lanes<W>,
 }
 
-impl Sums {
+impl<const W: usize> Sums<W> {
     pub fn new() -> Self {
         Self {
             energy_j: Lanes::ZERO,
@@ -90,7 +88,7 @@ impl Sums {
 
     /// Adds a second: its demand, the power of the air curtains in W, and the cabin at its end.
     #[inline(always)]
-    pub fn add(&mut self, demand: &Demand, air_curtain_power_w: Lanes, cabin: Lanes) {
+    pub fn add(&mut self, demand: &Demand<W>, air_curtain_power_w: Lanes<W>, cabin: Lanes<W>) {
         let power_w = demand.air_unit_power_w.abs() + demand.radiant_heater_power_w + air_curtain_power_w;
         self.energy_j = self.energy_j + power_w;
         self.saturated_s = self.saturated_s + demand.held_back;
@@ -108,8 +106,8 @@ impl Sums {
         (max_abs_pmv_15min, rides): (Option<f64>, Rides),
         (used, end): (Used, BusState),
     ) -> Summary {
-        debug_assert!(lane < LANES);
-        let of = |sum: &Lanes| sum.0[lane];
+        debug_assert!(lane < W);
+        let of = |sum: &Lanes<W>| sum.0[lane];
         Summary {
             seconds,
             mean_hvac_power_w: of(&self.energy_j) / f64::from(seconds),

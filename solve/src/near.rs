@@ -78,7 +78,7 @@ impl<'y> YearStates<'y> {
                 for (place, (window, start)) in windows.iter().zip(starts).enumerate() {
                     let start = start.or_else(|| Start::cold(&cabin, window));
                     let bests = start.map_or([Best::Lost; 4], |start| start.bests(&cabin, window, wanted));
-                    units.price(&bus.designs, &bests);
+                    units.price(&bus.designs, &bests, [true; 4]);
                     for (design, spec) in bus.designs.iter().enumerate() {
                         let nearest = || {
                             let guess = start.map(|start| start.states[0])?;

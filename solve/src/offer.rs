@@ -105,11 +105,11 @@ impl Units {
         std::array::from_fn(|place| self.units.iter().any(|unit| unit.choices[place]))
     }
 
-    /// Prices the choices of a window. `designs` are those that the units are of.
-    pub fn price(&mut self, designs: &[Design], bests: &[Best; 4]) {
+    /// Prices the choices of a window that have changed. `designs` are those that the units are of.
+    pub fn price(&mut self, designs: &[Design], bests: &[Best; 4], changed: [bool; 4]) {
         for unit in &mut self.units {
             let design = &designs[unit.design];
-            for (place, best) in bests.iter().enumerate().filter(|(place, _)| unit.choices[*place]) {
+            for (place, best) in bests.iter().enumerate().filter(|(place, _)| unit.choices[*place] && changed[*place]) {
                 let offer = Offer::new(best, design);
                 unit.total_w[place] = match &offer {
                     Offer::Powers(powers) => powers.total_w,

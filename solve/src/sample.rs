@@ -38,23 +38,25 @@ impl<'a> SampleSolver<'a> {
         let cabin = Cabin::new(self.vehicle, self.views, disturbances);
         self.find_states(&cabin);
         let windows = self.grid.windows().len();
-        let (mut bests, mut states) = ([Best::LeftOut; 4], [None; 4]);
+        let mut bests = Bests::NONE;
         for window in 0..windows {
-            find_bests(&self.states, self.grid.window_limits()[window], &cabin, self.wanted, (&mut bests, &mut states));
-            self.units.price(self.grid.designs(), &bests);
+            let changed = bests.find(&self.states, self.grid.window_limits()[window], &cabin, self.wanted);
+            self.units.price(self.grid.designs(), &bests.choices, changed);
             for design in 0..self.grid.designs().len() {
                 let optimum = &mut optima[design * windows + window];
                 (optimum.design, optimum.window) = (design, window);
                 let outcome = &mut optimum.outcome;
                 // Each is written where it stays, since to move one costs as much as to find it.
                 match self.units.cheapest(design) {
-                    Cheapest::Choice { place, powers, runner_up_w } => match (&bests[place], states[place]) {
-                        (Best::Found(choice), Some(state)) => {
-                            *outcome = Outcome::Solved(operation(choice, powers, state), runner_up_w);
+                    Cheapest::Choice { place, powers, runner_up_w } => {
+                        match (&bests.choices[place], bests.states[place]) {
+                            (Best::Found(choice), Some((state, _))) => {
+                                *outcome = Outcome::Solved(operation(choice, powers, state), runner_up_w);
+                            }
+                            _ => *outcome = Outcome::NotConverged,
                         }
-                        _ => *outcome = Outcome::NotConverged,
-                    },
-                    Cheapest::Limited => *outcome = self.limited(&cabin, design, window, &bests),
+                    }
+                    Cheapest::Limited => *outcome = self.limited(&cabin, design, window, &bests.choices),
                     Cheapest::Infeasible(reason) => *outcome = Outcome::Infeasible(reason),
                     Cheapest::NotConverged => *outcome = Outcome::NotConverged,
                 }
@@ -68,12 +70,12 @@ impl<'a> SampleSolver<'a> {
         let cabin = Cabin::new(self.vehicle, self.views, disturbances);
         self.find_states(&cabin);
         let design = &self.grid.designs()[design];
-        let (mut bests, mut states) = ([Best::LeftOut; 4], [None; 4]);
-        find_bests(&self.states, self.grid.window_limits()[window], &cabin, self.wanted, (&mut bests, &mut states));
+        let mut bests = Bests::NONE;
+        bests.find(&self.states, self.grid.window_limits()[window], &cabin, self.wanted);
         std::array::from_fn(|place| {
             let devices = Devices::CHOICES[place];
-            let operation = match (&bests[place], states[place]) {
-                (Best::Found(choice), Some(state)) => {
+            let operation = match (&bests.choices[place], bests.states[place]) {
+                (Best::Found(choice), Some((state, _))) => {
                     let powers = choice.powers(design);
                     (powers.supply.unmet_w == 0.0).then(|| operation(choice, &powers, state))
                 }
@@ -101,41 +103,55 @@ impl<'a> SampleSolver<'a> {
     }
 }
 
-/// Puts every wanted choice between two limits at its best in its place, and the state of it.
-#[inline]
-fn find_bests<'s>(
-    states: &'s States,
-    limits: (usize, usize),
-    cabin: &Cabin<'_>,
-    wanted: [bool; 4],
-    (bests, at): (&mut [Best; 4], &mut [Option<&'s SteadyState>; 4]),
-) {
-    for place in (0..4).filter(|place| wanted[*place]) {
-        (bests[place], at[place]) = best(states, limits, cabin, Devices::CHOICES[place]);
+/// The four choices at their best in a window.
+struct Bests<'s> {
+    choices: [Best; 4],
+    /// The state of each, and what the unit does there.
+    states: [Option<(&'s SteadyState, OperatingMode)>; 4],
+}
+
+impl<'s> Bests<'s> {
+    const NONE: Self = Self { choices: [Best::LeftOut; 4], states: [None; 4] };
+
+    /// Finds every wanted choice between two limits, and says which of them are not as they were before: a passive state is the
+    /// same in every window that holds it.
+    #[inline]
+    fn find(&mut self, states: &'s States, limits: (usize, usize), cabin: &Cabin<'_>, wanted: [bool; 4]) -> [bool; 4] {
+        let mut changed = [false; 4];
+        for place in (0..4).filter(|place| wanted[*place]) {
+            let devices = Devices::CHOICES[place];
+            let found = best(states, limits, devices);
+            if let (Some((state, end)), Some((before, end_before))) = (found, self.states[place])
+                && std::ptr::eq(state, before)
+                && end == end_before
+            {
+                continue;
+            }
+            changed[place] = true;
+            self.states[place] = found;
+            self.choices[place] = found.map_or(Best::Lost, |(state, end)| {
+                let heat_w = state.air_unit_heat_w[usize::from(devices.air_curtain)];
+                Best::at(cabin, devices, end, state.temperatures.cabin_k, heat_w, state.radiant_heater_power_w)
+            });
+        }
+        changed
     }
 }
 
-/// The best operation with a choice: the passive state moved into the window between two limits.
+/// The best state with a choice, and what the unit does there: the passive state moved into the window between two limits. `None`
+/// where a state that it takes was not found.
 #[inline]
-fn best<'s>(
-    states: &'s States,
-    (low, high): (usize, usize),
-    cabin: &Cabin<'_>,
-    devices: Devices,
-) -> (Best, Option<&'s SteadyState>) {
+fn best(states: &States, (low, high): (usize, usize), devices: Devices) -> Option<(&SteadyState, OperatingMode)> {
     let (on, curtain) = (usize::from(devices.radiant_heaters), usize::from(devices.air_curtain));
     let (limits, passive) = (&states.limits[on], &states.passive[on][curtain]);
-    let (state, end) = match (&limits[low], &limits[high], passive) {
-        (Seen::Lost, _, _) => return (Best::Lost, None),
-        (Seen::Settled(low), _, _) if low.air_unit_heat_w[curtain] >= 0.0 => (low, OperatingMode::Heating),
-        (_, Seen::Lost, _) => return (Best::Lost, None),
-        (_, Seen::Settled(high), _) if high.air_unit_heat_w[curtain] < 0.0 => (high, OperatingMode::Cooling),
-        (_, _, Seen::Settled(passive)) => (passive, OperatingMode::Passive),
-        (_, _, Seen::Lost | Seen::Needless) => return (Best::Lost, None),
-    };
-    let heat_w = state.air_unit_heat_w[curtain];
-    let best = Best::at(cabin, devices, end, state.temperatures.cabin_k, heat_w, state.radiant_heater_power_w);
-    (best, Some(state))
+    match (&limits[low], &limits[high], passive) {
+        (Seen::Lost, _, _) => None,
+        (Seen::Settled(low), _, _) if low.air_unit_heat_w[curtain] >= 0.0 => Some((low, OperatingMode::Heating)),
+        (_, Seen::Lost, _) => None,
+        (_, Seen::Settled(high), _) if high.air_unit_heat_w[curtain] < 0.0 => Some((high, OperatingMode::Cooling)),
+        (_, _, Seen::Settled(passive)) => Some((passive, OperatingMode::Passive)),
+        (_, _, Seen::Lost | Seen::Needless) => None,
+    }
 }
 
 #[inline(always)]

@@ -3,40 +3,39 @@
 //! A loop's command is gain · error + integral, within its limits. While a limit holds it and the error would drive it farther,
 //! the integral stands still (anti-windup by conditional integration: a substitute, the paper does not name its own).
 
-use cabin::{OperatingMode, Operation, Real};
+use cabin::{Lanes, OperatingMode, Operation, Real};
 
 use super::{AirCurtain, Setting};
-use crate::lanes::{LANES, Lanes};
 use crate::{Dynamics, PowerLimits, Used};
 
 /// All loops with their states. What follows from mode and setting is ready as numbers of the lanes.
 #[derive(Debug, Clone)]
-pub(crate) struct Loops {
+pub(crate) struct Loops<const W: usize> {
     gains: [Gain; 2],
-    limits: [PowerLimits; LANES],
-    settings: [Setting; LANES],
-    modes: [OperatingMode; LANES],
+    limits: [PowerLimits; W],
+    settings: [Setting; W],
+    modes: [OperatingMode; W],
     /// Modes that there have been.
-    used: [Used; LANES],
+    used: [Used; W],
     /// 1 while heating, −1 while cooling, 0 otherwise.
-    sign: Lanes,
-    setpoint_k: Lanes,
-    start_below_k: Lanes,
-    start_above_k: Lanes,
-    stop_beyond_k: Lanes,
+    sign: Lanes<W>,
+    setpoint_k: Lanes<W>,
+    start_below_k: Lanes<W>,
+    start_above_k: Lanes<W>,
+    stop_beyond_k: Lanes<W>,
     /// What may still be wanted where a mode ends: nothing, or anything.
-    stop_wanted_w: Lanes,
-    low_w: Lanes,
-    high_w: Lanes,
-    integral_w: Lanes,
-    heater_setpoint_k: Lanes,
-    heater_high_w: Lanes,
-    heater_integral_w: Lanes,
+    stop_wanted_w: Lanes<W>,
+    low_w: Lanes<W>,
+    high_w: Lanes<W>,
+    integral_w: Lanes<W>,
+    heater_setpoint_k: Lanes<W>,
+    heater_high_w: Lanes<W>,
+    heater_integral_w: Lanes<W>,
     /// 1 where a cabin above ambient temperature is what counts for the curtains, −1 where it is one below.
-    curtain_sign: Lanes,
-    curtain_above_k: Lanes,
+    curtain_sign: Lanes<W>,
+    curtain_above_k: Lanes<W>,
     /// 1 where the air curtains run, 0 elsewhere.
-    pub curtain: Lanes,
+    pub curtain: Lanes<W>,
 }
 
 /// Gain in W/K, and gain over the integral time in W/(K s).
@@ -48,13 +47,13 @@ struct Gain {
 
 /// What the loops ask for in a second.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Demand {
+pub(crate) struct Demand<const W: usize> {
     /// Electric power of the air unit in W; negative where it cools.
-    pub air_unit_power_w: Lanes,
+    pub air_unit_power_w: Lanes<W>,
     /// Electric power of the radiant heaters in W.
-    pub radiant_heater_power_w: Lanes,
+    pub radiant_heater_power_w: Lanes<W>,
     /// 1 where a limit keeps the air unit from giving what is wanted, 0 elsewhere.
-    pub held_back: Lanes,
+    pub held_back: Lanes<W>,
 }
 
 /// Everything off, for ever.
@@ -70,9 +69,9 @@ const OFF: Setting = Setting {
     air_curtain: AirCurtain::Off,
 };
 
-impl Loops {
+impl<const W: usize> Loops<W> {
     /// Loops without memory, everything off.
-    pub fn new(dynamics: &Dynamics, limits: [PowerLimits; LANES]) -> Self {
+    pub fn new(dynamics: &Dynamics, limits: [PowerLimits; W]) -> Self {
         let gain = |w_k: f64, integral_s: f64| Gain { w_k, w_k_s: w_k / integral_s };
         let mut loops = Self {
             gains: [
@@ -80,9 +79,9 @@ impl Loops {
                 gain(dynamics.heater_gain_w_k, dynamics.heater_integral_s),
             ],
             limits,
-            settings: [OFF; LANES],
-            modes: [OperatingMode::Passive; LANES],
-            used: [Used::default(); LANES],
+            settings: [OFF; W],
+            modes: [OperatingMode::Passive; W],
+            used: [Used::default(); W],
             sign: Lanes::ZERO,
             setpoint_k: Lanes::ZERO,
             start_below_k: Lanes::ZERO,
@@ -99,7 +98,7 @@ impl Loops {
             curtain_above_k: Lanes::ZERO,
             curtain: Lanes::ZERO,
         };
-        (0..LANES).for_each(|lane| loops.refresh(lane));
+        (0..W).for_each(|lane| loops.refresh(lane));
         loops
     }
 
@@ -115,7 +114,7 @@ impl Loops {
     }
 
     /// Begins a setting. Radiant heaters that are switched on start without memory.
-    pub fn begin(&mut self, lane: usize, setting: Setting, cabin: Lanes) {
+    pub fn begin(&mut self, lane: usize, setting: Setting, cabin: Lanes<W>) {
         if setting.radiant_heater_k.is_some() != self.settings[lane].radiant_heater_k.is_some() {
             self.heater_integral_w.0[lane] = 0.0;
         }
@@ -126,17 +125,17 @@ impl Loops {
         self.refresh(lane);
     }
 
-    pub fn modes(&self) -> &[OperatingMode; LANES] {
+    pub fn modes(&self) -> &[OperatingMode; W] {
         &self.modes
     }
 
-    pub fn used(&self) -> &[Used; LANES] {
+    pub fn used(&self) -> &[Used; W] {
         &self.used
     }
 
     /// Whether any lane may not stay in its mode.
     #[inline(always)]
-    pub fn want_another_mode(&self, cabin: Lanes) -> bool {
+    pub fn want_another_mode(&self, cabin: Lanes<W>) -> bool {
         let (zero, one) = (Lanes::ZERO, Lanes::ONE);
         let starts = self.start_below_k.above(cabin, one, cabin.above(self.start_above_k, one, zero));
         let idle = self.wanted_w(cabin).above(self.stop_wanted_w, zero, one);
@@ -146,14 +145,14 @@ impl Loops {
 
     /// What the air unit would be asked for without limits, in the direction of its mode.
     #[inline(always)]
-    fn wanted_w(&self, cabin: Lanes) -> Lanes {
+    fn wanted_w(&self, cabin: Lanes<W>) -> Lanes<W> {
         self.sign * (self.setpoint_k - cabin).mul_add(self.gains[0].w_k, self.integral_w)
     }
 
     /// Lets every lane that may not stay in its mode choose anew.
-    pub fn choose_modes(&mut self, cabin: Lanes) {
+    pub fn choose_modes(&mut self, cabin: Lanes<W>) {
         let wanted_w = self.wanted_w(cabin);
-        for lane in 0..LANES {
+        for lane in 0..W {
             let cabin_k = cabin.0[lane];
             let beyond_k = self.sign.0[lane] * (cabin_k - self.setpoint_k.0[lane]);
             let stops = beyond_k > self.stop_beyond_k.0[lane] && wanted_w.0[lane] <= self.stop_wanted_w.0[lane];
@@ -209,13 +208,13 @@ impl Loops {
     }
 
     /// The sign of each mode, and the setpoint that it follows in K.
-    pub fn followed(&self) -> (Lanes, Lanes) {
+    pub fn followed(&self) -> (Lanes<W>, Lanes<W>) {
         (self.sign, self.setpoint_k)
     }
 
     /// The commands of a second.
     #[inline(always)]
-    pub fn command(&mut self, cabin: Lanes, radiant_heater: Lanes, ambient_k: f64) -> Demand {
+    pub fn command(&mut self, cabin: Lanes<W>, radiant_heater: Lanes<W>, ambient_k: f64) -> Demand<W> {
         let difference_k = self.curtain_sign * (cabin - ambient_k);
         self.curtain = difference_k.above(self.curtain_above_k, Lanes::ONE, Lanes::ZERO);
         let [air_unit, heaters] = self.gains;
@@ -232,7 +231,13 @@ impl Loops {
 impl Gain {
     /// The command within `low … high`, and how far it is held back by them.
     #[inline(always)]
-    fn command_w(self, error_k: Lanes, integral_w: &mut Lanes, low: Lanes, high: Lanes) -> (Lanes, Lanes) {
+    fn command_w<const W: usize>(
+        self,
+        error_k: Lanes<W>,
+        integral_w: &mut Lanes<W>,
+        low: Lanes<W>,
+        high: Lanes<W>,
+    ) -> (Lanes<W>, Lanes<W>) {
         let next_w = error_k.mul_add(self.w_k_s, *integral_w);
         let wanted_w = error_k.mul_add(self.w_k, next_w);
         let command_w = wanted_w.max(low).min(high);
@@ -245,6 +250,7 @@ impl Gain {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::LANES;
 
     /// Pseudo-random numbers from −1 to 1.
     fn dice(seed: &mut u64) -> f64 {
