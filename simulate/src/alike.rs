@@ -39,17 +39,16 @@ pub fn simulate_distinct(
         let distinct: Vec<Variant<'_>> = chosen.iter().map(|place| variants[*place]).collect();
         let abreast = |some: &[Variant<'_>]| simulate(mission, dynamics, some);
         let driven: Vec<Vec<Summary>> = distinct.par_chunks(LANES).map(abreast).collect::<Option<_>>()?;
-        for (place, summary) in chosen.iter().zip(driven.into_iter().flatten()) {
-            summaries[*place] = Some(summary);
-        }
-        for one in chosen {
-            let Some(summary) = summaries[one].clone() else { continue };
+        for (one, summary) in chosen.into_iter().zip(driven.into_iter().flatten()) {
+            let drives = |variant: &Variant<'_>| {
+                are_told_alike(&variants[one], variant) && serves(&variants[one], summary.used, variant, dynamics)
+            };
             for (place, variant) in variants.iter().enumerate() {
-                let is_open = summaries[place].is_none() && are_told_alike(&variants[one], variant);
-                if is_open && serves(&variants[one], summary.used, variant, dynamics) {
+                if summaries[place].is_none() && drives(variant) {
                     summaries[place] = Some(summary.beside(variant.segments));
                 }
             }
+            summaries[one] = Some(summary);
         }
     }
 }
@@ -70,10 +69,10 @@ fn next(variants: &[Variant<'_>], summaries: &[Option<Summary>], dynamics: &Dyna
         if chosen.len() == lanes {
             break;
         }
+        // By itself as well, where it is chosen already.
         let is_served = |one: &usize| {
-            *one == place
-                || are_told_alike(&variants[*one], &variants[place])
-                    && serves(&variants[*one], heats_and_cools, &variants[place], dynamics)
+            are_told_alike(&variants[*one], &variants[place])
+                && serves(&variants[*one], heats_and_cools, &variants[place], dynamics)
         };
         if !chosen.iter().any(is_served) {
             chosen.push(place);
