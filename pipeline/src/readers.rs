@@ -7,7 +7,7 @@ use study::Study;
 use crate::{PipelineError, open};
 
 /// Samples whose optima are read at once.
-const BLOCK: usize = 64;
+const BLOCK: usize = 256;
 
 /// Samples in blocks of which each can be read at once: they lie side by side.
 pub(crate) fn blocks<'b, 's>(samples: &'b [&'s Sample]) -> impl Iterator<Item = &'b [&'s Sample]> {
@@ -26,12 +26,12 @@ impl Reader {
         grid: &store::StoredGrid,
         block: &[&Sample],
     ) -> Result<Vec<StoredOptimum>, PipelineError> {
-        let (Some(first), Some(last)) = (block.first(), block.last()) else { return Ok(Vec::new()) };
         let store = match &mut self.0 {
             Some(store) => store,
             none => none.insert(open::for_reading(study)?),
         };
-        Ok(store.optima(grid, first.id, last.id)?)
+        let ids: Vec<i64> = block.iter().map(|sample| sample.id).collect();
+        Ok(store.optima(grid, &ids)?)
     }
 }
 

@@ -162,12 +162,10 @@ pub(crate) fn is_whole(row: &SqliteRow, hash: &mut RowHash) -> Result<bool, sqlx
 
 /// The rows of a query on a table, `table.*` first, each of them looked at where damage is refused.
 pub(crate) fn whole(store: Damage<'_>, table: &'static str, rows: &[SqliteRow]) -> Result<(), StoreError> {
-    let Damage::Refused(path) = store else { return Ok(()) };
     let mut hash = RowHash::default();
     for row in rows {
-        if !is_whole(row, &mut hash)? {
-            let key = SEALED.iter().chain([&OPTIMA]).find(|t| t.0 == table).map_or(&[][..], |t| t.1);
-            return Err(StoreError::Damaged { path: path.to_owned(), what: place((table, key), row) });
+        if matches!(store, Damage::Refused(_)) && !is_whole(row, &mut hash)? {
+            store.of(table, row)?;
         }
     }
     Ok(())
@@ -180,6 +178,15 @@ pub(crate) enum Damage<'p> {
     Refused(&'p std::path::Path),
     /// Somebody looks at all checks anyhow.
     Reported,
+}
+
+impl Damage<'_> {
+    /// A row of a table is damaged.
+    pub fn of(self, table: &'static str, row: &SqliteRow) -> Result<(), StoreError> {
+        let Self::Refused(path) = self else { return Ok(()) };
+        let key = SEALED.iter().chain([&OPTIMA]).find(|t| t.0 == table).map_or(&[][..], |t| t.1);
+        Err(StoreError::Damaged { path: path.to_owned(), what: place((table, key), row) })
+    }
 }
 
 /// Gives rows their checks and commits.

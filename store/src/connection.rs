@@ -39,7 +39,7 @@ pub fn lock_path(database: &Path) -> PathBuf {
 }
 
 /// Rows that SQLite's thread reads ahead: with fewer, the two threads wait for each other.
-const ROWS_AHEAD: usize = 1024;
+pub(crate) const ROWS_AHEAD: usize = 1024;
 
 /// Whether a transaction is half written in the file, or one is being written.
 fn has_journal(path: &Path) -> bool {

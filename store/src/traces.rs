@@ -133,7 +133,7 @@ impl Store {
                 let rows = sqlx::query(sql).bind(id).bind(id).fetch_all(&mut *c).await?;
                 whole(damage, "hourly_sample", &rows)?;
                 for s in &rows {
-                    segments.extend(operation(s)?.map(|o| Ok::<_, sqlx::Error>((sample(s)?, o))).transpose()?);
+                    segments.extend(operation(damage, s)?.map(|o| Ok::<_, StoreError>((sample(s)?, o))).transpose()?);
                 }
                 let sql = "SELECT * FROM trace_minute WHERE trace_id = ? ORDER BY minute";
                 let minutes = sqlx::query(sql).bind(id).fetch_all(&mut *c).await?;

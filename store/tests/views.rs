@@ -183,7 +183,7 @@ fn filled(store: &mut Store) {
             &Beside::default(),
         )
         .unwrap();
-    let stored = store.optima(&change.grid, 1, 4).unwrap();
+    let stored = store.optima(&change.grid, &[1, 2, 3, 4]).unwrap();
     assert_eq!(stored.len(), points.len());
     for (row, (id, optimum)) in stored.iter().zip(&points) {
         assert_eq!((row.sample_id, row.design, row.window), (*id, optimum.design, optimum.window));

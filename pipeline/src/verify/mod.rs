@@ -90,8 +90,8 @@ pub fn verify(
         if progress.stop() {
             return Err(PipelineError::Interrupted);
         }
-        let (Some(first), Some(last)) = (block.first(), block.last()) else { continue };
-        let rows = store.optima(&grid, first.id, last.id)?;
+        let ids: Vec<i64> = block.iter().map(|sample| sample.id).collect();
+        let rows = store.optima(&grid, &ids)?;
         for row in &rows {
             sums.add(row);
         }
