@@ -217,6 +217,7 @@ impl<'a, 'm, 'v, const W: usize> Drive<'a, 'm, 'v, W> {
                 tell(from_s, &past, [&votes, &means], record);
             }
         }
+        judge.judge_windows();
         End {
             x: self.x,
             sums: self.sums,
@@ -384,6 +385,13 @@ mod tests {
         };
         let with_all = driven(|run| Arch::new().dispatch(run));
         assert_eq!(with_all, driven(|run| run.with_simd(pulp::Scalar)));
+        #[cfg(target_arch = "x86_64")]
+        if pulp::x86::V3::try_new().is_some() {
+            assert_eq!(
+                with_all,
+                driven(|run| Simd::vectorize(pulp::x86::V3::try_new().expect("the machine has it"), run))
+            );
+        }
         // As few as four come out as eight do.
         assert_eq!(with_all[..FEW], together::<FEW>(&mission, &Dynamics::default(), &variants[..FEW], None));
         assert_ne!(with_all[0], with_all[4]);

@@ -39,4 +39,4 @@ pub use summary::Summary;
 pub use trace::{Trace, TraceMinute};
 
 /// Version of the model: it changes whenever a stored simulation would, beyond rounding, come out differently.
-pub const SIMULATION_VERSION: u32 = 4;
+pub const SIMULATION_VERSION: u32 = 5;
