@@ -4,7 +4,7 @@
 use cabin::{Disturbances, OperatingMode, Optimum, PassengerViews, Vehicle};
 use rayon::prelude::*;
 
-use crate::{Grid, SampleSolver};
+use crate::{Grid, SampleSolver, Sum};
 
 /// Days of the months in a year without 29 February (paper, eq. meanPower).
 pub const DAYS_OF_MONTH: [f64; 12] = [31.0, 28.0, 31.0, 30.0, 31.0, 30.0, 31.0, 31.0, 30.0, 31.0, 30.0, 31.0];
@@ -131,37 +131,4 @@ fn annual<'m>(months: impl Iterator<Item = &'m MonthSum>) -> AnnualMean {
     let [hvac_power_w, heating_power_w, cooling_power_w] =
         sums.map(|sum| (days.value() > 0.0).then(|| sum.value() / days.value()));
     AnnualMean { hvac_power_w, heating_power_w, cooling_power_w, samples, unsolved, limited }
-}
-
-/// A compensated sum.
-#[derive(Debug, Clone, Copy, Default)]
-struct Sum {
-    sum: f64,
-    lost: f64,
-}
-
-impl Sum {
-    fn add(&mut self, value: f64) {
-        let next = self.sum + value;
-        self.lost += if self.sum.abs() > value.abs() { (self.sum - next) + value } else { (value - next) + self.sum };
-        self.sum = next;
-    }
-
-    fn value(self) -> f64 {
-        self.sum + self.lost
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::Sum;
-
-    #[test]
-    fn prop_a_sum_keeps_what_a_plain_one_loses() {
-        let mut sum = Sum::default();
-        for value in [1e16, 1.0, -1e16, 1.0] {
-            sum.add(value);
-        }
-        assert_eq!(sum.value(), 2.0);
-    }
 }

@@ -27,6 +27,7 @@ mod offer;
 mod sample;
 mod states;
 mod steady;
+mod sum;
 
 pub use annual::{AnnualMean, DAYS_OF_MONTH, YearSamples};
 pub use certificate::{CertificateError, certify};
@@ -34,6 +35,7 @@ pub use grid::{Grid, GridError};
 pub use method::Method;
 pub use near::{Bus, YearStates};
 pub use sample::{SampleSolver, solve_blocks};
+pub use sum::Sum;
 
 /// Version of the method: it changes whenever a bit of a stored optimum would come out differently.
 pub const METHOD_VERSION: u32 = 9;

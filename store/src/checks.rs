@@ -3,11 +3,12 @@
 //! A row has a check over its other columns (`row_check`, its last column), a table of averages one over all its rows. Reads
 //! that something is built on look at them; [`Store::check_all`] looks at everything.
 
-use futures_util::TryStreamExt;
+use futures_util::{StreamExt, TryStreamExt};
 use sqlx::sqlite::{SqliteConnection, SqliteRow};
 use sqlx::{AssertSqlSafe, Column, Row, Sqlite, Transaction, TypeInfo, ValueRef};
 use std::collections::BTreeMap;
 
+use crate::connection::ROWS_AHEAD;
 use crate::dictionary::without_words;
 use crate::{Store, StoreError};
 
@@ -83,8 +84,6 @@ const AVERAGES: [(&str, &str); 39] = [
 ];
 /// Rows that get their checks in one statement.
 const SEALED_AT_ONCE: usize = 256;
-/// Rows between two questions whether to stop.
-const ROWS: u64 = 10_000;
 
 /// What a look at all checks has found.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -337,7 +336,7 @@ fn place((table, key): (&str, &[&str]), row: &SqliteRow) -> String {
     format!("{table}{}", key.iter().map(text).collect::<String>())
 }
 
-/// Looks at the rows of a query on a table, one by one.
+/// Looks at the rows of a query on a table, at some while SQLite reads the next ones.
 async fn check_rows(
     c: &mut SqliteConnection,
     table: Table,
@@ -345,16 +344,26 @@ async fn check_rows(
     checked: &mut Checked,
     stop: &dyn Fn() -> bool,
 ) -> Result<(), StoreError> {
-    let mut hash = RowHash::default();
     // The text is built from constants alone.
-    let mut rows = sqlx::query(AssertSqlSafe(sql.to_owned())).fetch(c);
-    while let Some(row) = rows.try_next().await? {
-        checked.count += 1;
-        if !is_whole(&row, &mut hash)? {
-            checked.damaged.push(place(table, &row));
+    let mut rows = sqlx::query(AssertSqlSafe(sql.to_owned())).fetch(c).fuse();
+    let mut read: Vec<SqliteRow> = Vec::new();
+    loop {
+        let next = (&mut rows).take(ROWS_AHEAD).try_collect();
+        let (next, looked_at) = tokio::join!(next, async { look_at(table, &read, checked) });
+        looked_at?;
+        read = next?;
+        if read.is_empty() || stop() {
+            return Ok(());
         }
-        if checked.count.is_multiple_of(ROWS) && stop() {
-            break;
+    }
+}
+
+fn look_at(table: Table, rows: &[SqliteRow], checked: &mut Checked) -> Result<(), StoreError> {
+    let mut hash = RowHash::default();
+    for row in rows {
+        checked.count += 1;
+        if !is_whole(row, &mut hash)? {
+            checked.damaged.push(place(table, row));
         }
     }
     Ok(())

@@ -5,7 +5,7 @@ use sqlx::Row;
 use sqlx::sqlite::SqliteConnection;
 
 use crate::row::{Insert, pack, put_all, unpack};
-use crate::{Store, StoreError, StoredGrid, Uncertainty};
+use crate::{MonthAverages, Store, StoreError, StoredGrid, Uncertainty};
 
 /// What samples have in common.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
@@ -114,10 +114,12 @@ pub struct Bin {
     pub weight: f64,
 }
 
-/// What completing the optima writes besides averages.
-#[derive(Debug, Clone, PartialEq, Default)]
+/// What completing the optima writes that is not made of what the database holds.
+#[derive(Debug, Clone, Default)]
 pub struct Energy {
-    /// Months that have changed.
+    /// Months that have changed: their averages.
+    pub averages: Vec<MonthAverages>,
+    /// Their sums.
     pub sums: Vec<MonthSums>,
     /// Of the same months.
     pub flows: Vec<MonthFlows>,

@@ -41,7 +41,7 @@ mod verification;
 mod views;
 
 pub use self::setpoints::SetpointRow;
-pub use averages::Beside;
+pub use averages::{Beside, MonthAverages};
 pub use bus::BusRow;
 pub use checks::Checked;
 pub use clouds::{Cloud, CloudPoint};

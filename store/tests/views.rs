@@ -14,7 +14,8 @@ use proptest::prelude::*;
 use solve::Method;
 use std::collections::BTreeSet;
 use store::{
-    Beside, Counts, DesignRow, Energy, MissingOptima, NewOptimum, RecordedStage, RunEnd, StageRecord, Store, StoreError,
+    Beside, Counts, DesignRow, Energy, MissingOptima, MonthAverages, NewOptimum, RecordedStage, RunEnd, StageRecord,
+    Store, StoreError, StoredGrid,
 };
 use tempfile::TempDir;
 
@@ -151,6 +152,19 @@ fn solved(design: usize, mode: OperatingMode, power_w: f64) -> Optimum {
     Optimum { design, window: 0, outcome: Outcome::Solved(operation, Some(5.0)) }
 }
 
+/// Of the months that have changed.
+fn averages(store: &mut Store, grid: &StoredGrid) -> Energy {
+    let (months, samples) = (store.stale_months().unwrap(), store.samples().unwrap());
+    let of_month = |month: u8| {
+        let mut averages = MonthAverages::new(month, grid);
+        for sample in samples.iter().filter(|s| s.month == month) {
+            store.optima(grid, &[sample.id]).unwrap().iter().for_each(|optimum| averages.add(optimum));
+        }
+        averages
+    };
+    Energy { averages: months.into_iter().map(of_month).collect(), ..Energy::default() }
+}
+
 /// Two files, four samples in January and July, two designs, one window.
 fn filled(store: &mut Store) {
     for path in ["a", "b"] {
@@ -175,11 +189,12 @@ fn filled(store: &mut Store) {
     }
     store.put_optima(&change.grid, points.iter().map(|(id, optimum)| NewOptimum::of(*id, optimum))).unwrap();
     assert!(store.annual().unwrap().is_empty(), "averages show before the stage is complete");
+    let energy = averages(store, &change.grid);
     store
         .complete_optima(
             &StageRecord { key: "k".to_owned(), result: "[]".to_owned() },
             &change.grid,
-            &Energy::default(),
+            &energy,
             &Beside::default(),
         )
         .unwrap();
@@ -359,11 +374,12 @@ fn prop_averages_are_those_of_the_last_complete_stage_and_only_changed_months_ar
     let grid = store.grid().unwrap();
     let optima = [0, 1].map(|d| (4, solved(d, OperatingMode::Cooling, 700.0)));
     store.put_optima(&grid, optima.iter().map(|(id, o)| NewOptimum::of(*id, o))).unwrap();
+    let energy = averages(&mut store, &grid);
     store
         .complete_optima(
             &StageRecord { key: "k2".to_owned(), result: "[]".to_owned() },
             &grid,
-            &Energy::default(),
+            &energy,
             &Beside::default(),
         )
         .unwrap();

@@ -12,7 +12,7 @@ use cabin::{Cabin, Design, HeatTransfer, PassengerViews};
 use ingest::sample::Sample;
 use simulate::{Limits, PowerLimits};
 use std::collections::BTreeMap;
-use store::{BusRow, Energy, MonthDays, MonthFlows, MonthSums, Store, StoredGrid};
+use store::{BusRow, Energy, MonthAverages, MonthDays, MonthFlows, MonthSums, Store, StoredGrid};
 use study::Study;
 
 use self::classes::Classes;
@@ -60,10 +60,11 @@ pub(crate) fn energy(
         limits_w: power_limits_w(study),
         progress,
     };
-    let (mut sums, mut flows, mut days) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut averages, mut sums, mut flows, mut days) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     let add = |reader: &mut Reader, month: &u8| adder.month(reader, *month);
     in_order(&stale, rayon::current_num_threads(), add, |of_month| {
         let of_month = of_month?;
+        averages.push(of_month.averages);
         sums.push(of_month.sums);
         flows.extend(of_month.flows);
         days.push(of_month.days);
@@ -79,7 +80,7 @@ pub(crate) fn energy(
     let ptc = study.design_rows.iter().position(|row| row.name == "ptc");
     let pmv_1 = grid.windows.iter().position(|w| w.is_plus_minus(1.0));
     let uncertainty = uncertainty(days, &store.month_days(grid)?, &year, [points, windows], ptc, pmv_1);
-    Ok(Energy { sums, flows, classes, bins, uncertainty })
+    Ok(Energy { averages, sums, flows, classes, bins, uncertainty })
 }
 
 /// What the months of a study are added up with.
@@ -95,6 +96,7 @@ struct Adder<'a> {
 
 /// What a month adds up to.
 struct OfMonth {
+    averages: MonthAverages,
     sums: MonthSums,
     flows: Vec<MonthFlows>,
     days: MonthDays,
@@ -105,6 +107,7 @@ impl Adder<'_> {
     fn month(&self, reader: &mut Reader, month: u8) -> Result<OfMonth, PipelineError> {
         let (points, windows) = (self.study.grid.points(), self.study.grid.windows().len());
         let (mut classes, mut flows, mut days) = (Classes::new(points), Flows::new(points), DaysOfMonth::new(points));
+        let mut averages = MonthAverages::new(month, self.grid);
         // Samples between which none of another month lies.
         let runs = self.samples.chunk_by(|a, b| a.month == b.month).filter(|run| run[0].month == month);
         for block in runs.flat_map(blocks) {
@@ -119,6 +122,7 @@ impl Adder<'_> {
                 let mut sums = classes.sample(sample);
                 let day = days.place(day(sample, self.study.zone));
                 for row in of_sample {
+                    averages.add(row);
                     if let Some(o) = row.outcome.as_ref().and_then(|outcome| outcome.operation()) {
                         let point = row.design * windows + row.window;
                         sums.add(point, o);
@@ -128,6 +132,11 @@ impl Adder<'_> {
                 }
             }
         }
-        Ok(OfMonth { sums: classes.finish(month), flows: flows.finish(month, windows), days: days.finish(month) })
+        Ok(OfMonth {
+            averages,
+            sums: classes.finish(month),
+            flows: flows.finish(month, windows),
+            days: days.finish(month),
+        })
     }
 }

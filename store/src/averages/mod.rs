@@ -2,6 +2,7 @@
 //! half-computed study. Sums go by missions and months, not by the ids of rows, which tell in what order things came.
 
 mod controls;
+mod months;
 mod optima;
 mod simulations;
 
@@ -16,6 +17,8 @@ use crate::{
     control_views, driven, economics, energy, setpoints, uncertainty, variants,
 };
 
+pub use months::MonthAverages;
+
 impl Store {
     /// Completes the optima: renews the averages of the months that have changed and the variants, and records the stage.
     ///
@@ -29,8 +32,6 @@ impl Store {
         beside: &Beside,
     ) -> Result<(), StoreError> {
         let renew = [
-            "DELETE FROM monthly_average WHERE month IN (SELECT month FROM stale_month)",
-            optima::MONTHLY,
             "DELETE FROM annual_average",
             optima::ANNUAL,
             optima::HISTORY,
@@ -118,6 +119,7 @@ impl Store {
             let run_id = last_run(&mut tx).await?;
             match new {
                 New::Optima(grid, energy, beside) => {
+                    months::put(&mut tx, run_id, grid, &energy.averages).await?;
                     energy::put(&mut tx, run_id, grid, energy).await?;
                     uncertainty::put(&mut tx, run_id, grid, &energy.uncertainty).await?;
                     variants::put(&mut tx, run_id, grid, &beside.variants).await?;

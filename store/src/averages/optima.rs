@@ -1,37 +1,4 @@
-//! What the optima come to in each month and in the year.
-
-/// The months whose samples, designs or windows have changed.
-pub const MONTHLY: &str = "INSERT INTO monthly_average
-SELECT
-    d.name,
-    w.pmv_limit,
-    w.pmv_min,
-    w.pmv_max,
-    s.month,
-    avg(p.air_unit_power_w + p.radiant_heater_power_w + p.air_curtain_power_w),
-    -- Heaters and curtain count to the side on which the air unit works; alone they heat.
-    avg(CASE WHEN p.operating_mode >= 0
-        THEN p.air_unit_power_w + p.radiant_heater_power_w + p.air_curtain_power_w
-        WHEN p.operating_mode < 0 THEN 0.0 END),
-    avg(CASE WHEN p.operating_mode < 0
-        THEN p.air_unit_power_w + p.radiant_heater_power_w + p.air_curtain_power_w
-        WHEN p.operating_mode >= 0 THEN 0.0 END),
-    count(*),
-    sum(p.status <> 0),
-    -- A binding limit is met to rounding; the next state inside is many orders of magnitude away.
-    sum(p.status = 0 AND p.pmv < w.pmv_min + 1e-6),
-    sum(p.status = 0 AND p.pmv > w.pmv_max - 1e-6),
-    sum(p.status = 0 AND p.operating_mode = 1),
-    sum(p.status = 0 AND p.operating_mode = -1),
-    sum(p.status = 0 AND p.outside_standard_range),
-    coalesce((SELECT max(run_id) FROM run), 0)
-FROM hourly_sample AS s
--- Samples in the order of their ids, whatever the planner knows of the tables: sums depend on it in their last digits.
-CROSS JOIN optimum_point AS p USING (sample_id)
-CROSS JOIN hvac_design AS d USING (design_id)
-CROSS JOIN comfort_window AS w USING (window_id)
-WHERE s.month IN (SELECT month FROM stale_month)
-GROUP BY p.design_id, p.window_id, s.month";
+//! What the optima come to in the year, from the averages of its months.
 
 /// From all months; a sample weighs 1/N · days/365 (paper, eq. meanPower), renormalised over the months present.
 pub const ANNUAL: &str = "INSERT INTO annual_average
