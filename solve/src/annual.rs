@@ -4,7 +4,8 @@
 use cabin::{Disturbances, OperatingMode, Optimum, PassengerViews, Vehicle};
 use rayon::prelude::*;
 
-use crate::{Grid, SampleSolver, Sum};
+use crate::sum::Sum;
+use crate::{Grid, PowerSums, SampleSolver};
 
 /// Days of the months in a year without 29 February (paper, eq. meanPower).
 pub const DAYS_OF_MONTH: [f64; 12] = [31.0, 28.0, 31.0, 30.0, 31.0, 30.0, 31.0, 31.0, 30.0, 31.0, 30.0, 31.0];
@@ -74,11 +75,8 @@ pub(crate) fn year(points: usize, months: &[Vec<MonthSum>]) -> Vec<AnnualMean> {
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct MonthSum {
     samples: u64,
-    solved: u64,
     limited: u64,
-    heating_w: Sum,
-    cooling_w: Sum,
-    all_w: Sum,
+    powers: PowerSums,
 }
 
 fn month(vehicle: &Vehicle, views: &PassengerViews, grid: &Grid, samples: &[Disturbances]) -> Vec<MonthSum> {
@@ -103,13 +101,8 @@ impl MonthSum {
     pub fn add(&mut self, used: Option<Used>) {
         self.samples += 1;
         let Some(used) = used else { return };
-        self.solved += 1;
         self.limited += u64::from(used.is_limited);
-        self.all_w.add(used.hvac_power_w);
-        match used.mode {
-            OperatingMode::Heating | OperatingMode::Passive => self.heating_w.add(used.hvac_power_w),
-            OperatingMode::Cooling => self.cooling_w.add(used.hvac_power_w),
-        }
+        self.powers.add(used.mode, used.hvac_power_w);
     }
 }
 
@@ -118,14 +111,12 @@ fn annual<'m>(months: impl Iterator<Item = &'m MonthSum>) -> AnnualMean {
     let (mut samples, mut unsolved, mut limited) = (0, 0, 0);
     for (of_month, days_of_month) in months.zip(DAYS_OF_MONTH) {
         samples += of_month.samples;
-        unsolved += of_month.samples - of_month.solved;
+        unsolved += of_month.samples - of_month.powers.solved();
         limited += of_month.limited;
-        if of_month.solved == 0 {
-            continue;
-        }
+        let Some(means_w) = of_month.powers.means_w() else { continue };
         days.add(days_of_month);
-        for (sum, part) in sums.iter_mut().zip([of_month.all_w, of_month.heating_w, of_month.cooling_w]) {
-            sum.add(part.value() / of_month.solved as f64 * days_of_month);
+        for (sum, mean_w) in sums.iter_mut().zip(means_w) {
+            sum.add(mean_w * days_of_month);
         }
     }
     let [hvac_power_w, heating_power_w, cooling_power_w] =

@@ -35,7 +35,7 @@ pub use grid::{Grid, GridError};
 pub use method::Method;
 pub use near::{Bus, YearStates};
 pub use sample::{SampleSolver, solve_blocks};
-pub use sum::Sum;
+pub use sum::PowerSums;
 
 /// Version of the method: it changes whenever a bit of a stored optimum would come out differently.
 pub const METHOD_VERSION: u32 = 9;

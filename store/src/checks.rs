@@ -160,11 +160,11 @@ pub(crate) fn is_whole(row: &SqliteRow, hash: &mut RowHash) -> Result<bool, sqlx
 }
 
 /// The rows of a query on a table, `table.*` first, each of them looked at where damage is refused.
-pub(crate) fn whole(store: Damage<'_>, table: &'static str, rows: &[SqliteRow]) -> Result<(), StoreError> {
+pub(crate) fn whole(damage: Damage<'_>, table: &'static str, rows: &[SqliteRow]) -> Result<(), StoreError> {
     let mut hash = RowHash::default();
     for row in rows {
-        if matches!(store, Damage::Refused(_)) && !is_whole(row, &mut hash)? {
-            store.of(table, row)?;
+        if matches!(damage, Damage::Refused(_)) && !is_whole(row, &mut hash)? {
+            damage.of(table, row)?;
         }
     }
     Ok(())

@@ -2,7 +2,7 @@
 //! once more.
 
 use cabin::{ComfortWindow, OperatingMode, Operation, StandardRange};
-use solve::Sum;
+use solve::PowerSums;
 use sqlx::sqlite::SqliteConnection;
 
 use crate::row::put_all;
@@ -23,16 +23,13 @@ pub struct MonthAverages {
 /// Of a design and window.
 #[derive(Debug, Clone, Copy, Default)]
 struct OfPoint {
-    samples: i64,
-    solved: i64,
+    samples: u64,
     lower: i64,
     upper: i64,
     heating: i64,
     cooling: i64,
     outside_range: i64,
-    power_w: Sum,
-    heating_power_w: Sum,
-    cooling_power_w: Sum,
+    powers: PowerSums,
 }
 
 impl MonthAverages {
@@ -49,7 +46,6 @@ impl MonthAverages {
         let point = &mut self.points[optimum.design * self.windows.len() + optimum.window];
         point.samples += 1;
         if let Some(o) = optimum.outcome.as_ref().and_then(|outcome| outcome.operation()) {
-            point.solved += 1;
             point.add(o, self.windows[optimum.window]);
         }
     }
@@ -57,13 +53,7 @@ impl MonthAverages {
 
 impl OfPoint {
     fn add(&mut self, o: &Operation, window: ComfortWindow) {
-        let power_w = o.hvac_power_w();
-        self.power_w.add(power_w);
-        // Heaters and curtain count to the side on which the air unit works; alone they heat.
-        match o.mode {
-            OperatingMode::Cooling => self.cooling_power_w.add(power_w),
-            OperatingMode::Heating | OperatingMode::Passive => self.heating_power_w.add(power_w),
-        }
+        self.powers.add(o.mode, o.hvac_power_w());
         self.lower += i64::from(o.pmv < window.pmv_min() + AT_LIMIT);
         self.upper += i64::from(o.pmv > window.pmv_max() - AT_LIMIT);
         self.heating += i64::from(o.mode == OperatingMode::Heating);
@@ -86,15 +76,15 @@ pub(super) async fn put(
             of_month.points.iter().copied().enumerate().filter(|(_, point)| point.samples > 0).collect();
         put_all(c, "monthly_average", &present, |insert, (place, point)| {
             let (design, window) = (place / grid.windows.len(), place % grid.windows.len());
-            let mean = |sum: Sum| (point.solved > 0).then(|| sum.value() / point.solved as f64);
+            let mean_w = |of: usize| point.powers.means_w().map(|means_w| means_w[of]);
             insert
                 .of_point(&grid.designs[design].name, grid.windows[window])?
                 .set("month", of_month.month)?
-                .set("hvac_power_w", mean(point.power_w))?
-                .set("heating_power_w", mean(point.heating_power_w))?
-                .set("cooling_power_w", mean(point.cooling_power_w))?
-                .set("sample_count", point.samples)?
-                .set("unsolved_count", point.samples - point.solved)?
+                .set("hvac_power_w", mean_w(0))?
+                .set("heating_power_w", mean_w(1))?
+                .set("cooling_power_w", mean_w(2))?
+                .set("sample_count", point.samples.cast_signed())?
+                .set("unsolved_count", (point.samples - point.powers.solved()).cast_signed())?
                 .set("lower_count", point.lower)?
                 .set("upper_count", point.upper)?
                 .set("heating_count", point.heating)?

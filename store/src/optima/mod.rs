@@ -213,10 +213,7 @@ fn take(
 ) -> Result<(), StoreError> {
     let mut hash = RowHash::default();
     for r in rows {
-        let row = read(r, &mut hash)?;
-        if !row.whole {
-            damage.of("optimum_point", r)?;
-        }
+        let row = read(damage, r, &mut hash)?;
         let [sample_id, design, window] = row.keys;
         let (design, window) = (grid.design(design)?, grid.window(window)?);
         optima.push(StoredOptimum { sample_id, design, window, outcome: row.outcome });
@@ -227,9 +224,6 @@ fn take(
 /// The operation of a row that ends with the columns of its optimum, where that is solved; refuses one that is not as it was
 /// written.
 pub(crate) fn operation(damage: Damage<'_>, r: &SqliteRow) -> Result<Option<Operation>, StoreError> {
-    let row = read(r, &mut RowHash::default())?;
-    if !row.whole {
-        damage.of("optimum_point", r)?;
-    }
+    let row = read(damage, r, &mut RowHash::default())?;
     Ok(row.outcome.and_then(|o| o.operation().copied()))
 }

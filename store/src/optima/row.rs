@@ -6,7 +6,8 @@ use sqlx::error::BoxDynError;
 use sqlx::sqlite::{SqliteArguments, SqliteRow};
 use sqlx::{Arguments, Decode, Row, Sqlite};
 
-use crate::checks::RowHash;
+use crate::StoreError;
+use crate::checks::{Damage, RowHash};
 
 /// The columns in the order of the table.
 pub(super) const COLUMNS: [&str; 25] = [
@@ -146,8 +147,6 @@ pub(super) struct StoredRow {
     pub keys: [i64; 3],
     /// `None` where a value that the status asks for is missing.
     pub outcome: Option<Outcome>,
-    /// Whether it is as it was written, as far as it says.
-    pub whole: bool,
 }
 
 /// Values one after the other, on their way out of a row and into its check.
@@ -177,8 +176,8 @@ impl<'a> Values<'a> {
     }
 }
 
-/// Reads the optimum of a row that ends with [`COLUMNS`].
-pub(super) fn read(row: &SqliteRow, hash: &mut RowHash) -> Result<StoredRow, sqlx::Error> {
+/// Reads the optimum of a row that ends with [`COLUMNS`]; refuses one that is not as it was written.
+pub(super) fn read(damage: Damage<'_>, row: &SqliteRow, hash: &mut RowHash) -> Result<StoredRow, StoreError> {
     let mut values = Values { row, at: row.len() - COLUMNS.len(), hash };
     let mut key = || Ok::<_, sqlx::Error>(values.integer()?.unwrap_or_default());
     let keys = [key()?, key()?, key()?];
@@ -199,7 +198,10 @@ pub(super) fn read(row: &SqliteRow, hash: &mut RowHash) -> Result<StoredRow, sql
         (None, ..) => None,
     };
     let now = hash.finish();
-    Ok(StoredRow { keys, outcome, whole: check.is_none_or(|then| then == now) })
+    if check.is_some_and(|then| then != now) {
+        damage.of("optimum_point", row)?;
+    }
+    Ok(StoredRow { keys, outcome })
 }
 
 /// The values of an operation but for the two that limits add; `None` where one is missing.
