@@ -149,8 +149,16 @@ fn cli_wrong_study_files_and_arguments_end_with_2() {
         "door_opn_share",
         "study.toml:19:1: unknown key `door_opn_share`; did you mean `door_open_share`?",
     );
-    fails("latitude_deg = 47.3779", "latitude_deg = 147.0", "latitude_deg = 147 is outside -90 … 90");
-    fails("\"Europe/Zurich\"", "\"Europe/Zuerich\"", "time_zone = \"Europe/Zuerich\" is not known");
+    fails(
+        "latitude_deg = 47.3779",
+        "latitude_deg = 147.0",
+        "study.toml:10:16: [location] latitude_deg = 147 is outside -90 … 90",
+    );
+    fails(
+        "\"Europe/Zurich\"",
+        "\"Europe/Zuerich\"",
+        "study.toml:13:13: [location] time_zone = \"Europe/Zuerich\" is not known",
+    );
     fails("step = 0.125", "step = 0.0", "step must be above 0");
     fails("split = \"erbs\"", "split = \"orgill\"", "did you mean `erbs`?");
     fails("air_curtain = true", "heating_cop = [[0.0, 2.0], [9.0, 3.0]]", "rises with the lift");

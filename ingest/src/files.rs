@@ -17,6 +17,9 @@ const MAX_BYTES: u64 = 128 << 20;
 /// Largest buffer that a reader keeps for the next file: four usual missions.
 const LARGEST_KEPT: usize = 32 << 20;
 
+/// So many bytes are hashed while the processor still has them at hand.
+const HASHED_AT_ONCE: u64 = 256 << 10;
+
 /// What tells an unchanged file from a changed one without reading it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FileStamp {
@@ -212,11 +215,15 @@ fn limited(source: impl Read, size: u64, mut bytes: Vec<u8>) -> Result<Content, 
     bytes.clear();
     // And room to see that there is no more.
     bytes.reserve(usize::try_from(size).unwrap_or(0) + 64);
-    source.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(|e| unreadable(&e))?;
+    let (mut source, mut hasher, mut hashed) = (source.take(MAX_BYTES + 1), blake3::Hasher::new(), 0);
+    while source.by_ref().take(HASHED_AT_ONCE).read_to_end(&mut bytes).map_err(|e| unreadable(&e))? > 0 {
+        hasher.update(&bytes[hashed..]);
+        hashed = bytes.len();
+    }
     if bytes.len() as u64 > MAX_BYTES {
         return Err(too_large());
     }
-    Ok(Content::new(bytes))
+    Ok(Content { bytes, blake3: hasher.finalize().to_hex().to_string(), stamp: None })
 }
 
 pub(crate) fn unreadable(error: &dyn std::error::Error) -> Finding {
@@ -278,32 +285,46 @@ pub(crate) fn label(base: &Path, path: &Path) -> String {
 /// Columns of a table at most: ten times those of ZTBus. Each one costs a parser memory before anybody looks at it.
 const MOST_COLUMNS: usize = 1000;
 /// Longest line in bytes: two hundred times those of ZTBus.
-const LONGEST_LINE: usize = 64 << 10;
+pub(crate) const LONGEST_LINE: usize = 64 << 10;
 
 /// Refuses a table whose lines would fill the memory while they are parsed: too long, too many, or too many columns.
 ///
 /// # Errors
 /// A finding with the line and the limit.
 pub fn check_lines(bytes: &[u8], separator: u8, most_rows: usize) -> Result<(), Finding> {
-    let too_much =
-        |line: usize, message: String| Err(Finding::whole(FindingKind::Unreadable, message).at_line(line as u64));
+    check_header(bytes, separator)?;
     let (mut start, mut line) = (0, 0);
     for end in memchr::memchr_iter(b'\n', bytes).chain([bytes.len()]) {
         line += 1;
-        if end - start > LONGEST_LINE {
-            return too_much(line, format!("a line of {} bytes; at most {LONGEST_LINE} are read", end - start));
-        }
+        check_length(line, end - start)?;
         start = end + 1;
-    }
-    let header = bytes.split(|&b| b == b'\n').next().unwrap_or_default();
-    let columns = memchr::memchr_iter(separator, header).count() + 1;
-    if columns > MOST_COLUMNS {
-        return too_much(1, format!("{columns} columns; at most {MOST_COLUMNS} are read"));
     }
     if line > most_rows + 2 {
         return too_much(most_rows + 2, format!("more than {most_rows} rows; no such file holds as many"));
     }
     Ok(())
+}
+
+/// The same of the header alone.
+pub(crate) fn check_header(bytes: &[u8], separator: u8) -> Result<(), Finding> {
+    let header = bytes.split(|&b| b == b'\n').next().unwrap_or_default();
+    check_length(1, header.len())?;
+    let columns = memchr::memchr_iter(separator, header).count() + 1;
+    if columns > MOST_COLUMNS {
+        return too_much(1, format!("{columns} columns; at most {MOST_COLUMNS} are read"));
+    }
+    Ok(())
+}
+
+fn check_length(line: usize, bytes: usize) -> Result<(), Finding> {
+    if bytes > LONGEST_LINE {
+        return too_much(line, format!("a line of {bytes} bytes; at most {LONGEST_LINE} are read"));
+    }
+    Ok(())
+}
+
+fn too_much(line: usize, message: String) -> Result<(), Finding> {
+    Err(Finding::whole(FindingKind::Unreadable, message).at_line(line as u64))
 }
 
 /// The lower-case extension of a path.

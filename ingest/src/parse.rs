@@ -3,6 +3,23 @@
 /// What tools write where there is no value.
 const MISSING: [&str; 7] = ["", "-", "nan", "na", "n/a", "null", "none"];
 
+/// The text of a field.
+pub(crate) fn text(field: &[u8]) -> Option<&str> {
+    std::str::from_utf8(field).ok().map(str::trim)
+}
+
+/// The number of a field; the same as [`number`] of its text, sooner for what most tools write.
+#[inline]
+pub(crate) fn number_of(field: &[u8]) -> Option<f64> {
+    if field == b"NaN" {
+        return Some(f64::NAN);
+    }
+    match fast_float2::parse(field) {
+        Ok(value) if f64::is_finite(value) => Some(value),
+        _ => number(text(field)?),
+    }
+}
+
 /// A number with a decimal point.
 pub(crate) fn number(text: &str) -> Option<f64> {
     if MISSING.iter().any(|missing| text.eq_ignore_ascii_case(missing)) {
@@ -40,6 +57,16 @@ pub(crate) fn likely_cause(text: &str) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn prop_the_number_of_a_field_is_that_of_its_text(value in any::<f64>(), digits in "-?[0-9]{1,18}(\\.[0-9]{0,18})?(e-?[0-9]{1,2})?") {
+            for text in [value.to_string(), format!("{value:e}"), digits] {
+                prop_assert_eq!(number(&text).map(f64::to_bits), number_of(text.as_bytes()).map(f64::to_bits), "{}", text);
+            }
+        }
+    }
 
     #[test]
     fn prop_what_common_tools_write_is_read() {
@@ -50,6 +77,13 @@ mod tests {
         assert_eq!((flag("True"), flag("FALSE"), flag("1.0"), flag("open")), (Some(1.0), Some(0.0), Some(1.0), None));
         for text in ["", "NaN", "NA", "-", "null"] {
             assert!(number(text).is_some_and(f64::is_nan), "{text:?}");
+        }
+        for text in [
+            "3.5", "-0", "+7", ".5", "1e3", " 2 ", "\u{a0}4", "nan", "-nan", "inf", "1e999", "", "-", "3,5", "0x10",
+            "1_0",
+        ] {
+            let [by_text, by_field] = [number(text.trim()), number_of(text.as_bytes())];
+            assert_eq!(by_text.map(f64::to_bits), by_field.map(f64::to_bits), "{text:?}");
         }
         assert_eq!((number("3.5"), number("3,5"), number("inf")), (Some(3.5), None, None));
         assert!(likely_cause("-3,5").starts_with("decimal commas") && !likely_cause("3;5").starts_with("decimal"));

@@ -2,40 +2,48 @@
 //! copied: a mission has some ten thousand records of 26 columns, of which seven are asked for.
 //!
 //! Separators are found 64 bytes at a time: a comparison gives a bit for each byte, and the exclusive or of all quotes up to a
-//! byte says whether it stands in quotes (Langdale and Lemire 2019, doi 10.1007/s00778-019-00578-5).
+//! byte says whether it stands in quotes; their places are written down several at a time, whether there are as many or not
+//! (Langdale and Lemire 2019, doi 10.1007/s00778-019-00578-5).
 
+use pulp::{Arch, NullaryFnOnce};
 use wide::u8x16;
 
+use crate::files::{LONGEST_LINE, check_lines};
 use crate::{Finding, FindingKind};
 
 const BLOCK: usize = 64;
-/// Separators that are looked for at a time.
-const BATCH: usize = 4096;
+/// Fields that are looked for at a time.
+const BATCH: usize = 1024;
+/// Separators of a block that are written down at once: more than most blocks have.
+const USUAL: usize = 16;
 
 /// Records below a header.
 pub(crate) struct Scanner<'b, const N: usize> {
     bytes: &'b [u8],
     /// What stands between two fields.
     separator: u8,
-    /// The wanted column of each wanted field.
-    places: [Option<usize>; N],
+    /// The wanted column of each wanted field, or one that no record has.
+    places: [usize; N],
     /// Where the next block begins.
     at: usize,
     /// All ones inside quotes.
     inside: u64,
     /// Whether a separator stands before the block.
     after_separator: bool,
-    /// Separators that have been found, those of records that are done first.
-    separators: Vec<usize>,
-    /// Places in `separators` of those that end records.
-    ends: Vec<usize>,
+    /// Where fields begin, those of records that are done first; the last one may be without an end so far.
+    starts: Vec<usize>,
+    /// How many of them are known; behind those lies what no longer counts.
+    known: usize,
+    /// Places in `starts` of the first fields of records, but for the first.
+    firsts: Vec<usize>,
     /// Whether there are line breaks in quotes.
     has_inner: bool,
-    /// How many separators and ends are done.
-    done: [usize; 2],
-    /// Where the next record begins, and on which line.
-    start: usize,
+    /// How many records are done of `firsts`, and where the next one begins in `starts`.
+    done: usize,
+    first: usize,
+    /// The line of the next record, and whether it is longer than is read.
     line: u64,
+    is_too_long: bool,
     quotes: Quotes,
 }
 
@@ -66,31 +74,43 @@ impl<'b, const N: usize> Scanner<'b, N> {
         let mut scanner = Self {
             bytes,
             separator,
-            places: *places,
+            places: places.map(|place| place.unwrap_or(usize::MAX - 1)),
             at: 0,
             inside: 0,
             after_separator: true,
-            separators: Vec::with_capacity(BATCH + BLOCK + 1),
-            ends: Vec::new(),
+            starts: vec![0; BATCH + BLOCK + 1],
+            known: 1,
+            firsts: Vec::new(),
             has_inner: false,
-            done: [0; 2],
-            start: 0,
+            done: 0,
+            first: 0,
             line: 1,
+            is_too_long: false,
             quotes: Quotes::Fine,
         };
         scanner.next();
         scanner
     }
 
-    /// Whether all is well, once so many records are through.
+    /// Whether all is well, once so many records are through, all of them or two more than may be.
     ///
     /// # Errors
-    /// Quotes that never close or stand where none can; no record at all.
-    pub fn check(&self, records: u64) -> Result<(), Finding> {
+    /// Too many records, or too long ones; quotes that never close or stand where none can; no record at all.
+    pub fn check(&self, records: usize, most: usize) -> Result<(), Finding> {
+        if records > most + 1 || self.is_too_long {
+            check_lines(self.bytes, self.separator, most)?;
+        }
         if let Some(line) = self.bad_quote() {
             let message =
                 "a quote never closes, or stands in a field that does not begin with one; export the file again";
             return Err(Finding::whole(FindingKind::Unreadable, message).at_line(line));
+        }
+        if self.is_too_long {
+            check_lines(self.bytes, self.separator, most)?;
+            let message = format!(
+                "a row of several lines has more than {LONGEST_LINE} bytes; look for a quote that never closes"
+            );
+            return Err(Finding::whole(FindingKind::Unreadable, message).at_line(self.line));
         }
         if records == 0 {
             return Err(Finding::whole(FindingKind::Empty, "there are no rows below the header").at_line(2));
@@ -104,36 +124,38 @@ impl<'b, const N: usize> Scanner<'b, N> {
         Some(1 + memchr::memchr_iter(b'\n', &self.bytes[..at]).count() as u64)
     }
 
-    /// Finds more separators, until a record is whole; false where there are none.
+    /// Finds more fields, until a record is whole; false where there are none, or none that is read.
     #[cold]
     fn find_more(&mut self) -> bool {
-        let [separators, ends] = self.done;
-        self.separators.drain(..separators);
-        self.ends.drain(..ends);
-        self.ends.iter_mut().for_each(|end| *end -= separators);
-        self.done = [0; 2];
-        while self.at < self.bytes.len() && (self.separators.len() < BATCH || self.ends.is_empty()) {
-            self.block();
+        self.starts.copy_within(self.first..self.known, 0);
+        self.known -= self.first;
+        self.first = 0;
+        self.done = 0;
+        self.firsts.clear();
+        Arch::new().dispatch(Blocks(self));
+        let start = self.starts[0];
+        self.is_too_long = self.firsts.is_empty() && self.at.min(self.bytes.len()) > start + LONGEST_LINE;
+        if self.is_too_long {
+            return false;
         }
-        if self.at >= self.bytes.len() && self.ends.is_empty() && self.start < self.bytes.len() {
+        if self.at >= self.bytes.len() && self.firsts.is_empty() && start < self.bytes.len() {
             // The last record need not end in a line break.
-            self.ends.push(self.separators.len());
-            self.separators.push(self.bytes.len());
+            self.starts[self.known] = self.bytes.len() + 1;
+            self.firsts.push(self.known);
+            self.known += 1;
         }
-        !self.ends.is_empty()
+        !self.firsts.is_empty()
     }
 
+    #[inline(always)]
     fn block(&mut self) {
-        let mut padded = [0; BLOCK];
         let rest = &self.bytes[self.at..];
-        let block: &[u8; BLOCK] = match rest.first_chunk() {
-            Some(block) => block,
-            None => {
-                padded[..rest.len()].copy_from_slice(rest);
-                &padded
-            }
-        };
-        let [commas, newlines, quotes] = [self.separator, b'\n', b'"'].map(|byte| equal(block, byte));
+        let block = rest.first_chunk().copied().unwrap_or_else(|| {
+            let mut padded = [0; BLOCK];
+            padded[..rest.len()].copy_from_slice(rest);
+            padded
+        });
+        let [commas, newlines, quotes] = [self.separator, b'\n', b'"'].map(|byte| equal(&block, byte));
         let before = self.inside;
         let inside = prefix_xor(quotes) ^ before;
         let separators = (commas | newlines) & !inside;
@@ -143,14 +165,31 @@ impl<'b, const N: usize> Scanner<'b, N> {
         }
         self.inside = if inside >> (BLOCK - 1) == 1 { u64::MAX } else { 0 };
         self.after_separator = separators >> (BLOCK - 1) == 1;
-        let known = self.separators.len();
-        ones(newlines & !inside)
-            .for_each(|bit| self.ends.push(known + (separators & ((1 << bit) - 1)).count_ones() as usize));
-        self.separators.extend(ones(separators).map(|bit| self.at + bit));
+        let found = separators.count_ones() as usize;
+        if self.starts.len() <= self.known + BLOCK {
+            // A record of very many fields.
+            self.starts.resize(2 * self.starts.len(), 0);
+        }
+        let (first, mut bits) = (self.at + 1, separators);
+        let mut next = || {
+            let bit = bits.trailing_zeros() as usize;
+            bits &= bits.wrapping_sub(1);
+            first + bit
+        };
+        let (usual, others) = self.starts[self.known..].split_at_mut(USUAL);
+        usual.fill_with(&mut next);
+        if found > USUAL {
+            others[..found - USUAL].fill_with(next);
+        }
+        for end in ones(newlines & !inside) {
+            self.firsts.push(self.known + (separators & ((1 << end) - 1)).count_ones() as usize);
+        }
+        self.known += found;
         self.at += BLOCK;
     }
 
     /// A quote that opens begins its field, or follows the one that seemed to close it.
+    #[inline(always)]
     fn check_quotes(&mut self, quotes: u64, inside: u64, separators: u64) {
         let opens = quotes & inside;
         let closes_before = (quotes & !inside) << 1;
@@ -167,32 +206,51 @@ impl<'b, const N: usize> Scanner<'b, N> {
     }
 }
 
+/// Blocks of a scanner, until its batch is full and a record is whole, or is longer than is read.
+struct Blocks<'s, 'b, const N: usize>(&'s mut Scanner<'b, N>);
+
+impl<const N: usize> NullaryFnOnce for Blocks<'_, '_, N> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self(scanner) = self;
+        let longest = scanner.starts[0] + LONGEST_LINE + BLOCK;
+        while scanner.at < scanner.bytes.len().min(longest) && (scanner.known < BATCH || scanner.firsts.is_empty()) {
+            scanner.block();
+        }
+    }
+}
+
 impl<'b, const N: usize> Iterator for Scanner<'b, N> {
     type Item = Record<'b, N>;
 
     #[inline]
     fn next(&mut self) -> Option<Record<'b, N>> {
-        if self.done[1] == self.ends.len() && !self.find_more() {
+        if self.is_too_long || self.done == self.firsts.len() && !self.find_more() {
             return None;
         }
-        let (first, last) = (self.done[0], self.ends[self.done[1]]);
-        let end = self.separators[last];
-        let next = (end + 1).min(self.bytes.len());
-        let mut record = Record { line: self.line, start: self.start, end: next, fields: [b"".as_slice(); N] };
+        let next = self.firsts[self.done];
+        // Each field ends before the separator in front of the next one.
+        let starts = &self.starts[self.first..=next];
+        let (start, end) = (starts[0], starts[starts.len() - 1] - 1);
+        if end - start > LONGEST_LINE {
+            self.is_too_long = true;
+            return None;
+        }
+        let mut record =
+            Record { line: self.line, start, end: (end + 1).min(self.bytes.len()), fields: [b"".as_slice(); N] };
         for (field, place) in record.fields.iter_mut().zip(self.places) {
-            let Some(separator) = place.map(|place| first + place).filter(|separator| *separator <= last) else {
-                continue;
-            };
-            let from = if separator == first { self.start } else { self.separators[separator - 1] + 1 };
-            *field = unquoted(&self.bytes[from..self.separators[separator]]);
+            if let (Some(&from), Some(&behind)) = (starts.get(place), starts.get(place + 1)) {
+                *field = unquoted(&self.bytes[from..behind - 1]);
+            }
         }
         self.line += 1;
         if self.has_inner {
-            self.line += memchr::memchr_iter(b'\n', &self.bytes[self.start..end]).count() as u64;
+            self.line += memchr::memchr_iter(b'\n', &self.bytes[start..end]).count() as u64;
         }
-        self.start = end + 1;
-        self.done[0] = last + 1;
-        self.done[1] += 1;
+        self.first = next;
+        self.done += 1;
         Some(record)
     }
 }
@@ -285,6 +343,27 @@ mod tests {
         assert_eq!(scanned(text, places), expected);
         let mut scanner = Scanner::new(text, b',', &places);
         assert_eq!((scanner.by_ref().count(), scanner.bad_quote()), (4, Some(6)));
+    }
+
+    #[test]
+    fn prop_as_many_fields_are_read_as_a_line_may_have_and_no_more() {
+        let refused = |row: &str, most| {
+            let text = format!("a,b\n1,2\n{row}\n3,4\n");
+            let mut scanner = Scanner::new(text.as_bytes(), b',', &[Some(1)]);
+            let records = scanner.by_ref().take(most + 2).count();
+            (records, scanner.check(records, most).err().map(|finding| (finding.line, finding.message)))
+        };
+        assert_eq!(refused(&",".repeat(LONGEST_LINE), 9), (3, None));
+        assert_eq!(refused(&format!("\"{0}\n{0}\"", "x".repeat(LONGEST_LINE / 2 - 2)), 9), (3, None));
+        let (records, finding) = refused(&",".repeat(LONGEST_LINE + 1), 9);
+        assert_eq!(
+            (records, finding),
+            (1, Some((Some(3), "a line of 65537 bytes; at most 65536 are read".to_owned())))
+        );
+        let (records, finding) = refused(&format!("\"{0}\n{0}\"", "x".repeat(LONGEST_LINE / 2)), 9);
+        assert_eq!((records, finding.map(|f| f.0)), (1, Some(Some(3))));
+        let (records, finding) = refused("5,6\n7,8", 2);
+        assert_eq!((records, finding), (4, Some((Some(4), "more than 2 rows; no such file holds as many".to_owned()))));
     }
 
     proptest! {

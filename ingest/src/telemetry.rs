@@ -1,7 +1,7 @@
 //! The columns of a ZTBus mission file that are read, row by row.
 
-use crate::files::{check_lines, check_text, find_columns};
-use crate::parse;
+use crate::files::{check_header, check_text, find_columns};
+use crate::parse::{self, text};
 use crate::scan::Scanner;
 use crate::{Finding, FindingKind};
 
@@ -96,7 +96,7 @@ impl<'b> Telemetry<'b> {
     /// Reads the header of a mission file.
     pub fn read(bytes: &'b [u8]) -> Result<Self, Finding> {
         check_text(bytes, true)?;
-        check_lines(bytes, b',', MOST_ROWS)?;
+        check_header(bytes, b',')?;
         let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
         let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(bytes);
         let header = reader.headers().map_err(|e| not_csv(&e))?;
@@ -108,67 +108,41 @@ impl<'b> Telemetry<'b> {
     /// Calls `row` with every row, in order, and says how many there are.
     ///
     /// # Errors
-    /// A file without rows, or with a quote that never closes.
+    /// A file without rows, with too many or too long ones, or with a quote that never closes.
     pub fn for_each(&self, mut row: impl FnMut(Row<'b>)) -> Result<u64, Finding> {
         let mut scanner = Scanner::new(self.bytes, b',', &self.places);
         let mut count = 0;
-        let [mut ambient, mut speed, mut power] = [const { Last::NONE }; 3];
-        for record in &mut scanner {
+        for record in scanner.by_ref().take(MOST_ROWS + 2) {
             let [time, passengers, door, ambient_k, speed_m_s, power_w, route] = record.fields;
             count += 1;
             row(Row {
                 line: record.line,
                 time_s: second(time),
-                passengers: if passengers == b"NaN" {
-                    Some(f64::NAN)
-                } else {
-                    text(passengers).and_then(parse::number)
-                },
+                passengers: parse::number_of(passengers),
                 door: match door {
                     b"0" => Some(0.0),
                     b"1" => Some(1.0),
                     other => text(other).and_then(parse::flag),
                 },
-                ambient_k: ambient.number(ambient_k),
-                speed_m_s: speed.number(speed_m_s),
-                power_w: power.number(power_w),
+                ambient_k: parse::number_of(ambient_k),
+                speed_m_s: parse::number_of(speed_m_s),
+                power_w: parse::number_of(power_w),
                 route: if matches!(route, b"-" | b"NaN") { b"" } else { route },
             });
         }
-        scanner.check(count)?;
-        Ok(count)
-    }
-}
-
-/// The last number of a column: many stay for seconds.
-pub(crate) struct Last<'b> {
-    text: &'b [u8],
-    number: Option<f64>,
-}
-
-impl<'b> Last<'b> {
-    pub const NONE: Self = Self { text: b"", number: Some(f64::NAN) };
-
-    pub fn number(&mut self, text: &'b [u8]) -> Option<f64> {
-        if self.text != text {
-            *self = Self { text, number: self::text(text).and_then(parse::number) };
-        }
-        self.number
+        scanner.check(count, MOST_ROWS)?;
+        Ok(count as u64)
     }
 }
 
 /// Ten digits, as nearly all are; else as [`parse::second`] reads them.
 fn second(field: &[u8]) -> Option<i64> {
-    let digit = |sum: Option<i64>, byte: &u8| match byte {
-        b'0'..=b'9' => sum.map(|sum| 10 * sum + i64::from(byte - b'0')),
-        _ => None,
-    };
-    let plain = if field.len() == 10 { field.iter().fold(Some(0), digit) } else { None };
-    plain.or_else(|| parse::second(text(field)?))
-}
-
-pub(crate) fn text(field: &[u8]) -> Option<&str> {
-    std::str::from_utf8(field).ok().map(str::trim)
+    match <[u8; 10]>::try_from(field) {
+        Ok(digits) if digits.iter().all(u8::is_ascii_digit) => {
+            Some(digits.iter().fold(0, |sum, digit| 10 * sum + i64::from(digit - b'0')))
+        }
+        _ => parse::second(text(field)?),
+    }
 }
 
 fn not_csv(error: &dyn std::error::Error) -> Finding {

@@ -3,8 +3,8 @@
 use pyo3::prelude::*;
 use pyo3::types::{PyAny, PyBool, PyDict, PyFloat, PyInt, PyString};
 use std::path::Path;
-use study::Study;
 use study::template::{Template, WeatherKeys, render};
+use study::{Study, StudyFileError};
 use toml::{Table, Value};
 
 use crate::errors::{StudyError, argument};
@@ -49,7 +49,14 @@ pub fn file(
 /// The study of a file.
 pub fn parse(file: &Table) -> PyResult<Study> {
     let text = toml::to_string(file).map_err(|e| argument("designs", e))?;
-    Study::parse(&text, Path::new("arguments")).map_err(|e| StudyError::new_err(e.to_string()))
+    Study::parse(&text, Path::new("arguments")).map_err(|error| {
+        // Nobody has written the text, so that a line in it says nothing.
+        let message = match error {
+            StudyFileError::AtPlace { message, .. } | StudyFileError::Whole { message, .. } => message,
+            other => other.to_string(),
+        };
+        StudyError::new_err(format!("arguments: {message}"))
+    })
 }
 
 /// A value of Python as one of a study file.

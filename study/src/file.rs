@@ -12,6 +12,8 @@ use std::fmt;
 use std::marker::PhantomData;
 use std::path::Path;
 
+use crate::place;
+
 /// The version of the study file's format that this program reads.
 pub const SCHEMA_VERSION: u32 = 1;
 
@@ -485,9 +487,9 @@ pub enum StudyFileError {
         /// What the system says.
         source: std::io::Error,
     },
-    /// It is no TOML, or holds keys and values that a study does not have.
+    /// It is no TOML, holds keys that a study does not have, or values that do not make one.
     #[error("{path}:{line}:{column}: {message}")]
-    Syntax {
+    AtPlace {
         /// The file.
         path: String,
         /// Line, from 1.
@@ -497,9 +499,9 @@ pub enum StudyFileError {
         /// What is wrong, and what to do.
         message: String,
     },
-    /// Its values do not make a study.
+    /// It does not make a study as a whole.
     #[error("{path}: {message}")]
-    Content {
+    Whole {
         /// The file.
         path: String,
         /// What is wrong, and what to do.
@@ -516,31 +518,46 @@ impl StudyFile {
         let shown = path.display().to_string();
         if std::fs::metadata(path).is_ok_and(|m| !m.is_file()) {
             let message = "not a regular file; give a file".to_owned();
-            return Err(StudyFileError::Content { path: shown, message });
+            return Err(StudyFileError::Whole { path: shown, message });
         }
         if std::fs::metadata(path).is_ok_and(|m| m.len() > LARGEST) {
             let message = format!("more than {} MiB; no study file is that large", LARGEST >> 20);
-            return Err(StudyFileError::Content { path: shown, message });
+            return Err(StudyFileError::Whole { path: shown, message });
         }
         std::fs::read_to_string(path).map_err(|source| StudyFileError::Read { path: shown, source })
     }
 
     pub fn parse(text: &str, path: &str) -> Result<Self, StudyFileError> {
         let file: Self = toml::from_str(text).map_err(|error| {
-            let at = error.span().map_or(0, |s| s.start).min(text.len());
-            let before = &text[..at];
-            let line = before.matches('\n').count() + 1;
-            let column = before.rsplit('\n').next().map_or(0, |l| l.chars().count()) + 1;
-            StudyFileError::Syntax { path: path.to_owned(), line, column, message: explain(error.message()) }
+            let at = error.span().map_or(0, |s| s.start);
+            StudyFileError::at(text, at, path, explain(error.message()))
         })?;
         if file.schema_version != SCHEMA_VERSION {
             let message = format!(
                 "schema_version = {}, but this program reads {SCHEMA_VERSION}; update the file or the program",
                 file.schema_version
             );
-            return Err(StudyFileError::Content { path: path.to_owned(), message });
+            return Err(StudyFileError::about(text, path, message));
         }
         Ok(file)
+    }
+}
+
+impl StudyFileError {
+    /// Of what stands at a byte of a text.
+    fn at(text: &str, at: usize, path: &str, message: String) -> Self {
+        let before = &text[..at.min(text.len())];
+        let line = before.matches('\n').count() + 1;
+        let column = before.rsplit('\n').next().map_or(0, |l| l.chars().count()) + 1;
+        Self::AtPlace { path: path.to_owned(), line, column, message }
+    }
+
+    /// Of what a message says, with its place in the text where it has one.
+    pub(crate) fn about(text: &str, path: &str, message: String) -> Self {
+        match place::find(text, &message) {
+            Some(at) => Self::at(text, at, path, message),
+            None => Self::Whole { path: path.to_owned(), message },
+        }
     }
 }
 

@@ -7,6 +7,7 @@ pub mod assumptions;
 mod economics;
 mod file;
 pub mod keys;
+mod place;
 mod ready;
 mod schema;
 pub mod settings;
@@ -121,12 +122,7 @@ impl Study {
     /// # Errors
     /// [`StudyFileError`] names file, line and column, or what does not fit.
     pub fn open(path: &Path, database: Option<&Path>) -> Result<Self, StudyFileError> {
-        let text = StudyFile::read(path)?;
-        let file = StudyFile::parse(&text, &path.display().to_string())?;
-        let base = path.parent().map(Path::to_owned).unwrap_or_default();
-        Self::new(&file, base, database)
-            .map(|study| Self { text, ..study })
-            .map_err(|message| StudyFileError::Content { path: path.display().to_string(), message })
+        Self::of(StudyFile::read(path)?, path, database)
     }
 
     /// The study of a text, as if it stood in a file of that path.
@@ -134,11 +130,17 @@ impl Study {
     /// # Errors
     /// As [`Study::open`].
     pub fn parse(text: &str, path: &Path) -> Result<Self, StudyFileError> {
-        let file = StudyFile::parse(text, &path.display().to_string())?;
+        Self::of(text.to_owned(), path, None)
+    }
+
+    fn of(text: String, path: &Path, database: Option<&Path>) -> Result<Self, StudyFileError> {
+        let shown = path.display().to_string();
+        let file = StudyFile::parse(&text, &shown)?;
         let base = path.parent().map(Path::to_owned).unwrap_or_default();
-        Self::new(&file, base, None)
-            .map(|study| Self { text: text.to_owned(), ..study })
-            .map_err(|message| StudyFileError::Content { path: path.display().to_string(), message })
+        match Self::new(&file, base, database) {
+            Ok(study) => Ok(Self { text, ..study }),
+            Err(message) => Err(StudyFileError::about(&text, &shown, message)),
+        }
     }
 
     fn new(file: &StudyFile, base: PathBuf, database: Option<&Path>) -> Result<Self, String> {

@@ -87,7 +87,8 @@ pub(super) struct Routes<'b> {
 impl<'b> Routes<'b> {
     fn add(&mut self, segment: usize, route: &'b [u8]) {
         match self.runs.last_mut() {
-            Some((last, same, count)) if *last == segment && *same == route => *count += 1,
+            // Byte by byte: there are two or three.
+            Some((last, same, count)) if *last == segment && same.iter().eq(route) => *count += 1,
             _ => self.runs.push((segment, route, 1)),
         }
     }

@@ -6,11 +6,11 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::rows::Reader;
-use crate::files::{check_lines, check_text, find_columns};
-use crate::parse;
+use crate::files::{check_header, check_text, find_columns};
+use crate::parse::{self, text};
 use crate::scan::Scanner;
 use crate::stamp::{Clock, Stamp};
-use crate::telemetry::{Last, Row, Table, text};
+use crate::telemetry::{Row, Table};
 use crate::{Finding, FindingKind};
 
 /// Rows of a file at most.
@@ -152,14 +152,14 @@ pub(super) fn index(bytes: &[u8], map: &Arc<TelemetryMap>) -> Result<Index, Find
     let mark = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
     let bytes = &bytes[mark..];
     let ([time, vehicle, ..], separator) = map.places(bytes)?;
-    check_lines(bytes, separator, MOST_ROWS)?;
+    check_header(bytes, separator)?;
     let header_end = memchr::memchr(b'\n', bytes).map_or(bytes.len(), |n| n + 1);
     let mut open: BTreeMap<&[u8], Part> = BTreeMap::new();
     let mut numbers: BTreeMap<u32, &[u8]> = BTreeMap::new();
     let mut parts = Vec::new();
-    let (mut rows, mut unusable, mut first) = (0_u64, 0_u64, None);
+    let (mut rows, mut unusable, mut first) = (0_usize, 0_u64, None);
     let mut scanner = Scanner::new(bytes, separator, &[time, vehicle]);
-    for record in &mut scanner {
+    for record in scanner.by_ref().take(MOST_ROWS + 2) {
         let [stamp, vehicle] = record.fields;
         rows += 1;
         let last_s = open.get(vehicle).map_or(i64::MIN, |part| part.span.1);
@@ -198,7 +198,7 @@ pub(super) fn index(bytes: &[u8], map: &Arc<TelemetryMap>) -> Result<Index, Find
         part.span.1 = part.span.1.max(second);
         part.pieces[1].end = mark + record.end;
     }
-    scanner.check(rows)?;
+    scanner.check(rows, MOST_ROWS)?;
     parts.extend(open.into_values());
     let note = first.map(|(line, is_time, text)| {
         let text: String = text.chars().take(40).collect();
@@ -234,7 +234,6 @@ impl Part {
     /// Gives the rows of the mission to a reader, one for each second that they hold, and says how many there are.
     pub fn read<'b>(&self, bytes: &'b [u8], reader: &mut Reader<'b>) -> Result<u64, Finding> {
         let (places, separator) = self.map.places(bytes)?;
-        let [mut passengers, mut door, mut speed, mut power] = [const { Last::NONE }; 4];
         let (mut count, mut last_s) = (0, i64::MIN);
         for record in Scanner::new(bytes, separator, &places) {
             let [time, vehicle, on_board, doors, speed_field, power_field, route] = record.fields;
@@ -246,14 +245,14 @@ impl Part {
             let row = Row {
                 line: record.line + self.first_line - 2,
                 time_s,
-                passengers: passengers.number(on_board),
+                passengers: parse::number_of(on_board),
                 door: match &self.map.door {
                     Door::Flag(_) => text(doors).and_then(parse::flag),
-                    Door::Share(_) => door.number(doors).map(LoadChange::in_steps),
+                    Door::Share(_) => parse::number_of(doors).map(LoadChange::in_steps),
                 },
                 ambient_k: Some(f64::NAN),
-                speed_m_s: speed.number(speed_field).map(|speed| speed * self.map.speed_unit_m_s),
-                power_w: power.number(power_field).map(|power| power * self.map.power_unit_w),
+                speed_m_s: parse::number_of(speed_field).map(|speed| speed * self.map.speed_unit_m_s),
+                power_w: parse::number_of(power_field).map(|power| power * self.map.power_unit_w),
                 route: if matches!(route, b"-" | b"NaN") { b"" } else { route },
             };
             last_s = last_s.max(row.time_s.unwrap_or(i64::MIN));
