@@ -7,32 +7,32 @@ impl<R: Copy> State<R> {
     /// What a function makes of each number.
     #[inline(always)]
     #[must_use]
-    pub fn map<S>(&self, f: impl Fn(R) -> S) -> State<S> {
+    pub fn map<S>(&self, f: impl Fn(&R) -> S) -> State<S> {
         self.zip(self, |x, _| f(x))
     }
 
     /// What a function makes of each number and that of another state.
     #[inline(always)]
-    pub(crate) fn zip<S: Copy, T>(&self, other: &State<S>, f: impl Fn(R, S) -> T) -> State<T> {
+    pub(crate) fn zip<S: Copy, T>(&self, other: &State<S>, f: impl Fn(&R, &S) -> T) -> State<T> {
         let ((t, slopes), (t2, slopes2)) = ((&self.temperatures, &self.slopes), (&other.temperatures, &other.slopes));
         let line =
-            |a: &Line<R>, b: &Line<S>| Line { value: f(a.value, b.value), per_air_k: f(a.per_air_k, b.per_air_k) };
+            |a: &Line<R>, b: &Line<S>| Line { value: f(&a.value, &b.value), per_air_k: f(&a.per_air_k, &b.per_air_k) };
         State {
             temperatures: Temperatures {
-                cabin_k: f(t.cabin_k, t2.cabin_k),
-                interior_k: f(t.interior_k, t2.interior_k),
-                shell_inside_k: f(t.shell_inside_k, t2.shell_inside_k),
-                shell_outside_k: f(t.shell_outside_k, t2.shell_outside_k),
-                radiant_heater_k: f(t.radiant_heater_k, t2.radiant_heater_k),
+                cabin_k: f(&t.cabin_k, &t2.cabin_k),
+                interior_k: f(&t.interior_k, &t2.interior_k),
+                shell_inside_k: f(&t.shell_inside_k, &t2.shell_inside_k),
+                shell_outside_k: f(&t.shell_outside_k, &t2.shell_outside_k),
+                radiant_heater_k: f(&t.radiant_heater_k, &t2.radiant_heater_k),
             },
             slopes: Slopes {
-                interior: f(slopes.interior, slopes2.interior),
-                shell_inside: f(slopes.shell_inside, slopes2.shell_inside),
-                shell_outside: f(slopes.shell_outside, slopes2.shell_outside),
-                radiant_heater: f(slopes.radiant_heater, slopes2.radiant_heater),
+                interior: f(&slopes.interior, &slopes2.interior),
+                shell_inside: f(&slopes.shell_inside, &slopes2.shell_inside),
+                shell_outside: f(&slopes.shell_outside, &slopes2.shell_outside),
+                radiant_heater: f(&slopes.radiant_heater, &slopes2.radiant_heater),
             },
-            pmv: f(self.pmv, other.pmv),
-            pmv_slope: f(self.pmv_slope, other.pmv_slope),
+            pmv: f(&self.pmv, &other.pmv),
+            pmv_slope: f(&self.pmv_slope, &other.pmv_slope),
             clothes: [line(&self.clothes[0], &other.clothes[0]), line(&self.clothes[1], &other.clothes[1])],
         }
     }
@@ -43,7 +43,7 @@ impl<const W: usize> State<Lanes<W>> {
     #[must_use]
     #[inline]
     pub fn of(states: &[State; W]) -> Self {
-        let mut abreast = states[0].map(Lanes::splat);
+        let mut abreast = states[0].map(|x| Lanes::splat(*x));
         for (lane, state) in states.iter().enumerate().skip(1) {
             abreast.set_lane(lane, state);
         }

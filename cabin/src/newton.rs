@@ -109,7 +109,7 @@ impl<R: Real, const N: usize> Newton<'_, R, N> {
             clothing.value = of_moving(clothing.value, surface_k);
             clothing.per_air_k = of_moving(clothing.per_air_k, line.per_air_k);
         }
-        *self.state = self.state.zip(&next, of_moving);
+        *self.state = self.state.zip(&next, |old, new| of_moving(*old, *new));
         moved_k + changed
     }
 }

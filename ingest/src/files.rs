@@ -12,7 +12,7 @@ use crate::{Finding, FindingKind, IngestError};
 
 /// Largest file or archive entry that is read: five times the longest mission of ZTBus. What claims more, or unpacks
 /// to more, is refused before it fills the memory.
-const MAX_BYTES: u64 = 128 << 20;
+pub(crate) const MAX_BYTES: u64 = 128 << 20;
 
 /// Largest buffer that a reader keeps for the next file: four usual missions.
 const LARGEST_KEPT: usize = 32 << 20;
@@ -89,8 +89,12 @@ impl Content {
     /// Bytes with their hash.
     #[must_use]
     pub fn new(bytes: Vec<u8>) -> Self {
-        let blake3 = blake3::hash(&bytes).to_hex().to_string();
-        Self { bytes, blake3, stamp: None }
+        let hash = blake3::hash(&bytes);
+        Self::hashed(bytes, hash)
+    }
+
+    fn hashed(bytes: Vec<u8>, hash: blake3::Hash) -> Self {
+        Self { bytes, blake3: hash.to_hex().to_string(), stamp: None }
     }
 
     /// Reads a file.
@@ -223,7 +227,7 @@ fn limited(source: impl Read, size: u64, mut bytes: Vec<u8>) -> Result<Content, 
     if bytes.len() as u64 > MAX_BYTES {
         return Err(too_large());
     }
-    Ok(Content { bytes, blake3: hasher.finalize().to_hex().to_string(), stamp: None })
+    Ok(Content::hashed(bytes, hasher.finalize()))
 }
 
 pub(crate) fn unreadable(error: &dyn std::error::Error) -> Finding {

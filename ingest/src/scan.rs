@@ -2,20 +2,20 @@
 //! copied: a mission has some ten thousand records of 26 columns, of which seven are asked for.
 //!
 //! Separators are found 64 bytes at a time: a comparison gives a bit for each byte, and the exclusive or of all quotes up to a
-//! byte says whether it stands in quotes; their places are written down several at a time, whether there are as many or not
-//! (Langdale and Lemire 2019, doi 10.1007/s00778-019-00578-5).
+//! byte says whether it stands in quotes (Langdale and Lemire 2019, doi 10.1007/s00778-019-00578-5).
 
-use pulp::{Arch, NullaryFnOnce};
-use wide::u8x16;
+mod places;
 
-use crate::files::{LONGEST_LINE, check_lines};
+use places::{BLOCK, Places, WithPlaces, with_places};
+
+use crate::files::{LONGEST_LINE, MAX_BYTES, check_lines};
 use crate::{Finding, FindingKind};
 
-const BLOCK: usize = 64;
+// Places are `u32`, of which eight or sixteen fit a register.
+const _: () = assert!(MAX_BYTES < u32::MAX as u64 / 2);
+
 /// Fields that are looked for at a time.
 const BATCH: usize = 1024;
-/// Separators of a block that are written down at once: more than most blocks have.
-const USUAL: usize = 16;
 
 /// Records below a header.
 pub(crate) struct Scanner<'b, const N: usize> {
@@ -31,7 +31,7 @@ pub(crate) struct Scanner<'b, const N: usize> {
     /// Whether a separator stands before the block.
     after_separator: bool,
     /// Where fields begin, those of records that are done first; the last one may be without an end so far.
-    starts: Vec<usize>,
+    starts: Vec<u32>,
     /// How many of them are known; behind those lies what no longer counts.
     known: usize,
     /// Places in `starts` of the first fields of records, but for the first.
@@ -132,15 +132,15 @@ impl<'b, const N: usize> Scanner<'b, N> {
         self.first = 0;
         self.done = 0;
         self.firsts.clear();
-        Arch::new().dispatch(Blocks(self));
-        let start = self.starts[0];
+        with_places(Blocks(self));
+        let start = self.starts[0] as usize;
         self.is_too_long = self.firsts.is_empty() && self.at.min(self.bytes.len()) > start + LONGEST_LINE;
         if self.is_too_long {
             return false;
         }
         if self.at >= self.bytes.len() && self.firsts.is_empty() && start < self.bytes.len() {
             // The last record need not end in a line break.
-            self.starts[self.known] = self.bytes.len() + 1;
+            self.starts[self.known] = self.bytes.len() as u32 + 1;
             self.firsts.push(self.known);
             self.known += 1;
         }
@@ -148,43 +148,35 @@ impl<'b, const N: usize> Scanner<'b, N> {
     }
 
     #[inline(always)]
-    fn block(&mut self) {
+    fn block(&mut self, places: impl Places) {
         let rest = &self.bytes[self.at..];
         let block = rest.first_chunk().copied().unwrap_or_else(|| {
             let mut padded = [0; BLOCK];
             padded[..rest.len()].copy_from_slice(rest);
             padded
         });
-        let [commas, newlines, quotes] = [self.separator, b'\n', b'"'].map(|byte| equal(&block, byte));
+        let [commas, newlines, quotes] = [self.separator, b'\n', b'"'].map(|byte| places.equal(&block, byte));
         let before = self.inside;
-        let inside = prefix_xor(quotes) ^ before;
-        let separators = (commas | newlines) & !inside;
+        let mut inside = 0;
         if quotes != 0 || before != 0 {
-            self.check_quotes(quotes, inside, separators);
+            inside = prefix_xor(quotes) ^ before;
+            self.check_quotes(quotes, inside, (commas | newlines) & !inside);
             self.has_inner |= newlines & inside != 0;
         }
+        let (separators, ends) = ((commas | newlines) & !inside, newlines & !inside);
         self.inside = if inside >> (BLOCK - 1) == 1 { u64::MAX } else { 0 };
         self.after_separator = separators >> (BLOCK - 1) == 1;
-        let found = separators.count_ones() as usize;
         if self.starts.len() <= self.known + BLOCK {
             // A record of very many fields.
             self.starts.resize(2 * self.starts.len(), 0);
         }
-        let (first, mut bits) = (self.at + 1, separators);
-        let mut next = || {
-            let bit = bits.trailing_zeros() as usize;
-            bits &= bits.wrapping_sub(1);
-            first + bit
-        };
-        let (usual, others) = self.starts[self.known..].split_at_mut(USUAL);
-        usual.fill_with(&mut next);
-        if found > USUAL {
-            others[..found - USUAL].fill_with(next);
+        if let Some(out) = self.starts[self.known..].first_chunk_mut() {
+            places.write(separators, self.at as u32 + 1, out);
         }
-        for end in ones(newlines & !inside) {
+        for end in ones(ends) {
             self.firsts.push(self.known + (separators & ((1 << end) - 1)).count_ones() as usize);
         }
-        self.known += found;
+        self.known += separators.count_ones() as usize;
         self.at += BLOCK;
     }
 
@@ -209,15 +201,13 @@ impl<'b, const N: usize> Scanner<'b, N> {
 /// Blocks of a scanner, until its batch is full and a record is whole, or is longer than is read.
 struct Blocks<'s, 'b, const N: usize>(&'s mut Scanner<'b, N>);
 
-impl<const N: usize> NullaryFnOnce for Blocks<'_, '_, N> {
-    type Output = ();
-
+impl<const N: usize> WithPlaces for Blocks<'_, '_, N> {
     #[inline(always)]
-    fn call(self) {
+    fn call(self, places: impl Places) {
         let Self(scanner) = self;
-        let longest = scanner.starts[0] + LONGEST_LINE + BLOCK;
+        let longest = scanner.starts[0] as usize + LONGEST_LINE + BLOCK;
         while scanner.at < scanner.bytes.len().min(longest) && (scanner.known < BATCH || scanner.firsts.is_empty()) {
-            scanner.block();
+            scanner.block(places);
         }
     }
 }
@@ -233,7 +223,7 @@ impl<'b, const N: usize> Iterator for Scanner<'b, N> {
         let next = self.firsts[self.done];
         // Each field ends before the separator in front of the next one.
         let starts = &self.starts[self.first..=next];
-        let (start, end) = (starts[0], starts[starts.len() - 1] - 1);
+        let (start, end) = (starts[0] as usize, starts[starts.len() - 1] as usize - 1);
         if end - start > LONGEST_LINE {
             self.is_too_long = true;
             return None;
@@ -241,8 +231,8 @@ impl<'b, const N: usize> Iterator for Scanner<'b, N> {
         let mut record =
             Record { line: self.line, start, end: (end + 1).min(self.bytes.len()), fields: [b"".as_slice(); N] };
         for (field, place) in record.fields.iter_mut().zip(self.places) {
-            if let (Some(&from), Some(&behind)) = (starts.get(place), starts.get(place + 1)) {
-                *field = unquoted(&self.bytes[from..behind - 1]);
+            if let Some(&[from, behind]) = starts.get(place..).and_then(|rest| rest.first_chunk()) {
+                *field = unquoted(&self.bytes[from as usize..behind as usize - 1]);
             }
         }
         self.line += 1;
@@ -263,15 +253,6 @@ fn unquoted(field: &[u8]) -> &[u8] {
         [b'"', text @ .., b'"'] | [b'"', text @ ..] => text,
         _ => field,
     }
-}
-
-/// A bit for each byte that is equal.
-#[inline]
-fn equal(block: &[u8; BLOCK], byte: u8) -> u64 {
-    let wanted = u8x16::splat(byte);
-    let (lanes, _) = block.as_chunks::<16>();
-    let mask = |lane: usize| u64::from(u8x16::new(lanes[lane]).simd_eq(wanted).to_bitmask() as u16) << (16 * lane);
-    mask(0) | mask(1) | mask(2) | mask(3)
 }
 
 /// The exclusive or of all bits up to each.

@@ -112,19 +112,20 @@ impl<'b> Telemetry<'b> {
     pub fn for_each(&self, mut row: impl FnMut(Row<'b>)) -> Result<u64, Finding> {
         let mut scanner = Scanner::new(self.bytes, b',', &self.places);
         let mut count = 0;
+        let (mut last_passengers, mut last_ambient_k) = (Number::default(), Number::default());
         for record in scanner.by_ref().take(MOST_ROWS + 2) {
             let [time, passengers, door, ambient_k, speed_m_s, power_w, route] = record.fields;
             count += 1;
             row(Row {
                 line: record.line,
                 time_s: second(time),
-                passengers: parse::number_of(passengers),
+                passengers: last_passengers.or_of(passengers),
                 door: match door {
                     b"0" => Some(0.0),
                     b"1" => Some(1.0),
                     other => text(other).and_then(parse::flag),
                 },
-                ambient_k: parse::number_of(ambient_k),
+                ambient_k: last_ambient_k.or_of(ambient_k),
                 speed_m_s: parse::number_of(speed_m_s),
                 power_w: parse::number_of(power_w),
                 route: if matches!(route, b"-" | b"NaN") { b"" } else { route },
@@ -132,6 +133,25 @@ impl<'b> Telemetry<'b> {
         }
         scanner.check(count, MOST_ROWS)?;
         Ok(count as u64)
+    }
+}
+
+/// A number that stays for many rows, and the field that it was read from.
+#[derive(Debug, Default)]
+struct Number<'b> {
+    field: &'b [u8],
+    value: Option<f64>,
+}
+
+impl<'b> Number<'b> {
+    /// The number of a field, which is the last one where both are the same.
+    #[inline]
+    fn or_of(&mut self, field: &'b [u8]) -> Option<f64> {
+        // Byte by byte: there are few.
+        if field.is_empty() || !field.iter().eq(self.field) {
+            *self = Self { field, value: parse::number_of(field) };
+        }
+        self.value
     }
 }
 

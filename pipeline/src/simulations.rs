@@ -87,7 +87,7 @@ pub(crate) fn simulate(
     if progress.stop() {
         return Err(PipelineError::Interrupted);
     }
-    let ends = driven_ends(&store.driven_missions(Driven::Simulated)?, study.zone);
+    let ends = driven_ends(&store.driven_missions(&basis.grid, Driven::Simulated)?, study.zone);
     store.complete_simulations(&StageRecord { key, result: basis.missions.len().to_string() }, &ends)?;
     Ok(work(study, simulated, basis.missions.len(), stale.len()))
 }

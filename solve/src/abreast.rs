@@ -88,13 +88,13 @@ impl Found {
     /// The first or second pair of lanes, twice.
     #[inline]
     pub fn pair(&self, n: usize) -> Self {
-        let twice = |x: Abreast| Lanes(std::array::from_fn(|lane| x.0[2 * n + lane % 2]));
+        let twice = |x: &Abreast| Lanes(std::array::from_fn(|lane| x.0[2 * n + lane % 2]));
         Self {
             state: self.state.map(twice),
             settles: std::array::from_fn(|lane| self.settles[2 * n + lane % 2]),
-            air_unit_heat_w: self.air_unit_heat_w.map(|(heat_w, slope_w_k)| (twice(heat_w), twice(slope_w_k))),
-            mean_radiant_k: twice(self.mean_radiant_k),
-            radiant_heater_power_w: twice(self.radiant_heater_power_w),
+            air_unit_heat_w: self.air_unit_heat_w.map(|(heat_w, slope_w_k)| (twice(&heat_w), twice(&slope_w_k))),
+            mean_radiant_k: twice(&self.mean_radiant_k),
+            radiant_heater_power_w: twice(&self.radiant_heater_power_w),
         }
     }
 

@@ -32,8 +32,8 @@ pub(crate) enum Offer {
 #[derive(Debug, Clone)]
 pub(crate) struct Units {
     units: Vec<Unit>,
-    /// Place of each design's unit, and the places of the choices that it has.
-    designs: Vec<(usize, Vec<usize>)>,
+    /// Place of each design's unit, and which of the choices it has.
+    designs: Vec<(usize, [bool; 4])>,
 }
 
 /// An air unit.
@@ -45,10 +45,8 @@ struct Unit {
     choices: [bool; 4],
     /// Those in the window at hand.
     offers: [Offer; 4],
-    /// What they take in W; infinite where one does not meet the window.
+    /// What they take in W: infinite where one does not meet the window, less than anything where it did not settle.
     total_w: [f64; 4],
-    /// Which of them did not settle.
-    lost: [bool; 4],
 }
 
 /// What a design does in a window.
@@ -87,14 +85,13 @@ impl Units {
                         choices: [false; 4],
                         offers: [Offer::LeftOut; 4],
                         total_w: [f64::INFINITY; 4],
-                        lost: [false; 4],
                     });
                     units.len() - 1
                 });
             for (any, has) in units[unit].choices.iter_mut().zip(choices) {
                 *any |= has;
             }
-            (unit, (0..4).filter(|place| choices[*place]).collect())
+            (unit, choices)
         };
         let designs = designs.iter().enumerate().map(of_design).collect();
         Self { units, designs }
@@ -113,9 +110,9 @@ impl Units {
                 let offer = Offer::new(best, design);
                 unit.total_w[place] = match &offer {
                     Offer::Powers(powers) => powers.total_w,
+                    Offer::Lost => f64::NEG_INFINITY,
                     _ => f64::INFINITY,
                 };
-                unit.lost[place] = matches!(offer, Offer::Lost);
                 unit.offers[place] = offer;
             }
         }
@@ -124,25 +121,24 @@ impl Units {
     /// The cheapest of the priced choices that a design has, and how much more the next one costs.
     #[inline]
     pub fn cheapest(&self, design: usize) -> Cheapest<'_> {
-        let (unit, places) = &self.designs[design];
+        let (unit, has) = &self.designs[design];
         let unit = &self.units[*unit];
-        let (mut cheapest, mut least_w, mut second_w, mut any_lost) = (0, f64::INFINITY, f64::INFINITY, false);
-        for &place in places {
-            let total_w = unit.total_w[place];
+        let (mut cheapest, mut least_w, mut second_w) = (0, f64::INFINITY, f64::INFINITY);
+        for (place, (has, total_w)) in has.iter().zip(unit.total_w).enumerate() {
             // Of numbers alone, so that no branch is needed.
+            let total_w = if *has { total_w } else { f64::INFINITY };
             let is_cheaper = total_w < least_w;
             let dearer_w = if is_cheaper { least_w } else { total_w };
             second_w = if dearer_w < second_w { dearer_w } else { second_w };
             least_w = if is_cheaper { total_w } else { least_w };
             cheapest = if is_cheaper { place } else { cheapest };
-            any_lost |= unit.lost[place];
         }
         match &unit.offers[cheapest] {
-            Offer::Powers(powers) if least_w.is_finite() && !any_lost => {
+            Offer::Powers(powers) if least_w.is_finite() => {
                 let runner_up_w = second_w.is_finite().then_some(second_w - least_w);
                 Cheapest::Choice { place: cheapest, powers, runner_up_w }
             }
-            _ => unit.none(places),
+            _ => unit.none(*has),
         }
     }
 }
@@ -150,10 +146,10 @@ impl Units {
 impl Unit {
     /// Why a design with some of the choices has none that is known to be the cheapest.
     #[cold]
-    fn none(&self, places: &[usize]) -> Cheapest<'_> {
+    fn none(&self, has: [bool; 4]) -> Cheapest<'_> {
         let mut failure = Cheapest::NotConverged;
-        for &place in places {
-            match (&self.offers[place], &failure) {
+        for offer in self.offers.iter().zip(has).filter(|(_, has)| *has).map(|(offer, _)| offer) {
+            match (offer, &failure) {
                 (Offer::Limited, _) => failure = Cheapest::Limited,
                 // One that comes near the window is better than one that has no state.
                 (Offer::Infeasible(_), Cheapest::Limited) | (Offer::Powers(_) | Offer::LeftOut, _) => {}

@@ -2,11 +2,13 @@
 
 use cabin::ComfortWindow;
 use chrono::{DateTime, TimeDelta, Utc};
-use sqlx::sqlite::SqliteConnection;
+use futures_util::TryStreamExt;
+use sqlx::sqlite::{SqliteConnection, SqliteRow};
 use sqlx::{AssertSqlSafe, Row};
+use std::collections::BTreeMap;
 
 use crate::row::{ends, high, low, put_all, time, window};
-use crate::{Ends, Store, StoreError};
+use crate::{Ends, Store, StoreError, StoredGrid};
 
 /// How missions were driven.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -33,11 +35,18 @@ impl Driven {
     }
 }
 
-/// A mission that was driven.
+/// The missions that were driven with one design, comfort window and controller.
 #[derive(Debug, Clone, PartialEq)]
-pub struct DrivenMission {
+pub struct DrivenMissions {
     /// Design, comfort window, controller.
     pub point: DrivenPoint,
+    /// The missions, in the order of their names.
+    pub missions: Vec<DrivenMission>,
+}
+
+/// A mission that was driven.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DrivenMission {
     /// Its begin.
     pub start: DateTime<Utc>,
     /// The month that it counts to, 1 … 12.
@@ -73,42 +82,54 @@ pub struct DrivenEnds {
 }
 
 impl Store {
-    /// All driven missions by design, window and controller, in the order of the study.
+    /// All driven missions by design and window, in the order of the grid, and controller.
     ///
     /// # Errors
     /// [`StoreError::Refused`], [`StoreError::Damaged`].
-    pub fn driven_missions(&mut self, driven: Driven) -> Result<Vec<DrivenMission>, StoreError> {
+    pub fn driven_missions(&mut self, grid: &StoredGrid, driven: Driven) -> Result<Vec<DrivenMissions>, StoreError> {
         let sql = format!(
-            "SELECT d.name, w.pmv_min, w.pmv_max, r.controller, r.month, r.seconds, r.mean_hvac_power_w,
-                r.static_mean_hvac_power_w, g.start_utc, g.segment, g.duration_s
-            FROM {} AS r
-            JOIN hvac_design AS d USING (design_id)
-            JOIN comfort_window AS w USING (window_id)
-            JOIN mission_segment AS g ON g.source_file_id = r.source_file_id AND g.segment = (
-                SELECT min(f.segment) FROM mission_segment AS f WHERE f.source_file_id = r.source_file_id
-            )
-            ORDER BY d.position, w.position, r.controller, r.mission",
+            "SELECT source_file_id, design_id, window_id, controller, month, seconds, mean_hvac_power_w,
+                static_mean_hvac_power_w
+            FROM {}",
             driven.missions()
         );
         self.drive(async |c| {
+            let begins = begins(c).await?;
+            let mut controllers: Vec<String> = Vec::new();
+            // With the places of design, window, controller and mission.
+            let mut all: Vec<([usize; 4], DrivenMission)> = Vec::new();
             // The text is built from constants alone.
-            let rows = sqlx::query(AssertSqlSafe(sql)).fetch_all(c).await?;
-            let mission = |r: &sqlx::sqlite::SqliteRow| -> Result<DrivenMission, sqlx::Error> {
-                let before_s = r.try_get::<i64, _>("segment")? * r.try_get::<i64, _>("duration_s")?;
-                Ok(DrivenMission {
+            let mut rows = sqlx::query(AssertSqlSafe(sql)).fetch(c);
+            while let Some(row) = rows.try_next().await? {
+                let (mission, start) = *begins.get(&row.try_get(0)?).ok_or(sqlx::Error::RowNotFound)?;
+                let name: &str = row.try_get(3)?;
+                let controller = controllers.iter().position(|known| known == name).unwrap_or_else(|| {
+                    controllers.push(name.to_owned());
+                    controllers.len() - 1
+                });
+                let places = [grid.design(row.try_get(1)?)?, grid.window(row.try_get(2)?)?, controller, mission];
+                let mission = DrivenMission {
+                    start,
+                    month: row.try_get(4)?,
+                    seconds: row.try_get::<i64, _>(5)? as f64,
+                    power_w: row.try_get(6)?,
+                    static_power_w: row.try_get(7)?,
+                };
+                all.push((places, mission));
+            }
+            all.sort_unstable_by_key(|(places, _)| *places);
+            let of_point = |missions: &[([usize; 4], DrivenMission)]| {
+                let [design, window, controller, _] = missions[0].0;
+                DrivenMissions {
                     point: DrivenPoint {
-                        design: r.try_get("name")?,
-                        window: window(r)?,
-                        controller: r.try_get("controller")?,
+                        design: grid.designs[design].name.clone(),
+                        window: grid.windows[window],
+                        controller: controllers[controller].clone(),
                     },
-                    start: time(r, "start_utc")? - TimeDelta::seconds(before_s),
-                    month: r.try_get("month")?,
-                    seconds: r.try_get::<i64, _>("seconds")? as f64,
-                    power_w: r.try_get("mean_hvac_power_w")?,
-                    static_power_w: r.try_get("static_mean_hvac_power_w")?,
-                })
+                    missions: missions.iter().map(|(_, mission)| *mission).collect(),
+                }
             };
-            Ok(rows.iter().map(mission).collect::<Result<_, _>>()?)
+            Ok(all.chunk_by(|(a, _), (b, _)| a[..3] == b[..3]).map(of_point).collect())
         })
     }
 
@@ -121,7 +142,7 @@ impl Store {
         self.drive(async |c| {
             // The text is built from constants alone.
             let rows = sqlx::query(AssertSqlSafe(sql)).fetch_all(c).await?;
-            let row = |r: &sqlx::sqlite::SqliteRow| -> Result<DrivenEnds, sqlx::Error> {
+            let row = |r: &SqliteRow| -> Result<DrivenEnds, sqlx::Error> {
                 Ok(DrivenEnds {
                     point: DrivenPoint {
                         design: r.try_get("design")?,
@@ -135,6 +156,19 @@ impl Store {
             Ok(rows.iter().map(row).collect::<Result<_, _>>()?)
         })
     }
+}
+
+/// The missions' places in the order of their names, and when they begin, by their files.
+async fn begins(c: &mut SqliteConnection) -> Result<BTreeMap<i64, (usize, DateTime<Utc>)>, StoreError> {
+    // What stands beside a minimum is of its row.
+    let sql = "SELECT source_file_id, start_utc, segment * duration_s AS before_s, min(segment)
+        FROM mission_segment GROUP BY source_file_id ORDER BY mission";
+    let begin = |(place, r): (usize, &SqliteRow)| {
+        let start = time(r, "start_utc")? - TimeDelta::seconds(r.try_get("before_s")?);
+        Ok((r.try_get("source_file_id")?, (place, start)))
+    };
+    let rows = sqlx::query(sql).fetch_all(c).await?;
+    Ok(rows.iter().enumerate().map(begin).collect::<Result<_, sqlx::Error>>()?)
 }
 
 /// Replaces the intervals.

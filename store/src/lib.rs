@@ -49,7 +49,7 @@ pub use connection::{Store, lock_path};
 pub use control_views::{ControlClass, ControlMinute, ControlPoint, ControlTrace, ControlYear, Outside};
 pub use controls::{ControlId, ControlRow, ControlledMission};
 pub use dictionary::{Column, ColumnKind, Relation, dictionary};
-pub use driven::{Driven, DrivenEnds, DrivenMission, DrivenPoint};
+pub use driven::{Driven, DrivenEnds, DrivenMission, DrivenMissions, DrivenPoint};
 pub use economics::{EconomicInput, EconomicRow};
 pub use energy::{AirUnitSide, Bin, Class, ClassSum, ClassYear, Energy, MonthFlows, MonthSums};
 pub use error::StoreError;

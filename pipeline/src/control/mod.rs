@@ -85,7 +85,7 @@ pub(crate) fn control(
         return Err(PipelineError::Interrupted);
     }
     let missions = driving.basis.missions.len();
-    let ends = driven_ends(&store.driven_missions(Driven::Controlled)?, study.zone);
+    let ends = driven_ends(&store.driven_missions(&driving.basis.grid, Driven::Controlled)?, study.zone);
     store.complete_controls(&StageRecord { key, result: missions.to_string() }, &setpoints, &traces, &ends)?;
     Ok(work(study, driven, missions, stale.len()))
 }

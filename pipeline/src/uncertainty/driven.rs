@@ -4,7 +4,7 @@ use chrono::{Datelike, NaiveDate};
 use chrono_tz::Tz;
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
-use store::{DrivenEnds, DrivenMission};
+use store::{DrivenEnds, DrivenMission, DrivenMissions};
 
 use super::bootstrap::{Draws, Part, interval};
 use super::year_mean;
@@ -12,26 +12,25 @@ use super::year_mean;
 /// Seconds, energy, energy of the optima.
 const QUANTITIES: usize = 3;
 
-/// The intervals of missions that are sorted by what they are of; unknown where a month has a single day.
-pub fn driven_ends(missions: &[DrivenMission], zone: Tz) -> Vec<DrivenEnds> {
+/// The intervals of driven missions; unknown where a month has a single day.
+pub fn driven_ends(points: &[DrivenMissions], zone: Tz) -> Vec<DrivenEnds> {
     let day = |m: &DrivenMission| m.start.with_timezone(&zone).date_naive();
-    let days: BTreeSet<NaiveDate> = missions.iter().map(day).collect();
+    let days: BTreeSet<NaiveDate> = points.iter().flat_map(|of| &of.missions).map(day).collect();
     let months: Vec<u8> = days.iter().map(|day| day.month() as u8).collect();
     let places: BTreeMap<NaiveDate, usize> = days.into_iter().zip(0..).collect();
     let draws = Draws::of_study(&months);
-    let groups: Vec<&[DrivenMission]> = missions.chunk_by(|a, b| a.point == b.point).collect();
-    let of_group = |group: &&[DrivenMission]| {
+    let of_point = |of: &DrivenMissions| {
         let part = |m: &DrivenMission| Part {
             day: places[&day(m)],
             month: usize::from(m.month) - 1,
             sums: vec![m.seconds, m.seconds * m.power_w, m.seconds * m.static_power_w],
         };
-        let parts: Vec<Part> = group.iter().map(part).collect();
+        let parts: Vec<Part> = of.missions.iter().map(part).collect();
         let values = draws.each(&parts, QUANTITIES, 2, means);
         let ends = |place: usize| interval(values.chunks_exact(2).map(|v| v[place]));
-        DrivenEnds { point: group[0].point.clone(), power_w: ends(0), relative_difference: ends(1) }
+        DrivenEnds { point: of.point.clone(), power_w: ends(0), relative_difference: ends(1) }
     };
-    groups.par_iter().map(of_group).collect()
+    points.par_iter().map(of_point).collect()
 }
 
 /// Mean power, and how far it is from that of the optima; within a month every second counts alike.

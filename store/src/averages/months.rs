@@ -76,7 +76,8 @@ pub(super) async fn put(
             of_month.points.iter().copied().enumerate().filter(|(_, point)| point.samples > 0).collect();
         put_all(c, "monthly_average", &present, |insert, (place, point)| {
             let (design, window) = (place / grid.windows.len(), place % grid.windows.len());
-            let mean_w = |of: usize| point.powers.means_w().map(|means_w| means_w[of]);
+            let means_w = point.powers.means_w();
+            let mean_w = |of: usize| means_w.map(|means_w| means_w[of]);
             insert
                 .of_point(&grid.designs[design].name, grid.windows[window])?
                 .set("month", of_month.month)?
