@@ -216,9 +216,13 @@ fn limited(source: impl Read, size: u64, mut bytes: Vec<u8>) -> Result<Content, 
     if size > MAX_BYTES {
         return Err(too_large());
     }
-    bytes.clear();
     // And room to see that there is no more.
-    bytes.reserve(usize::try_from(size).unwrap_or(0) + 64);
+    let room = usize::try_from(size).unwrap_or(0) + 64;
+    bytes.clear();
+    if bytes.capacity() < room {
+        // A larger one in its place, which need not be copied, with room for the next file.
+        bytes = Vec::with_capacity(room.next_power_of_two());
+    }
     let (mut source, mut hasher, mut hashed) = (source.take(MAX_BYTES + 1), blake3::Hasher::new(), 0);
     while source.by_ref().take(HASHED_AT_ONCE).read_to_end(&mut bytes).map_err(|e| unreadable(&e))? > 0 {
         hasher.update(&bytes[hashed..]);
@@ -349,7 +353,7 @@ pub(crate) fn check_text(bytes: &[u8], utf8: bool) -> Result<(), Finding> {
     if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
         return finding("the file is UTF-16; save it as UTF-8".to_owned(), 0);
     }
-    if let Some(at) = bytes.iter().take(1 << 16).position(|&b| b == 0) {
+    if let Some(at) = memchr::memchr(0, &bytes[..bytes.len().min(1 << 16)]) {
         return finding("the file holds zero bytes; it is not text, or UTF-16: save it as UTF-8".to_owned(), at);
     }
     if utf8

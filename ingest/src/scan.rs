@@ -50,9 +50,8 @@ pub(crate) struct Scanner<'b, const N: usize> {
 /// What is wrong with quotes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Quotes {
+    /// Each begins or ends its field so far.
     Fine,
-    /// Inside quotes that opened at a byte.
-    Open(usize),
     /// One stands in a field that does not begin with one.
     Odd(usize),
 }
@@ -120,7 +119,12 @@ impl<'b, const N: usize> Scanner<'b, N> {
 
     /// The line of a quote that never closes or stands where none can.
     fn bad_quote(&self) -> Option<u64> {
-        let (Quotes::Open(at) | Quotes::Odd(at)) = self.quotes else { return None };
+        let at = match self.quotes {
+            Quotes::Odd(at) => at,
+            // What is open at the end was opened by the last one.
+            Quotes::Fine if self.inside != 0 => memchr::memrchr(b'"', &self.bytes[..self.at.min(self.bytes.len())])?,
+            Quotes::Fine => return None,
+        };
         Some(1 + memchr::memchr_iter(b'\n', &self.bytes[..at]).count() as u64)
     }
 
@@ -188,12 +192,8 @@ impl<'b, const N: usize> Scanner<'b, N> {
         let begins = (separators << 1) | u64::from(self.after_separator) | closes_before;
         let first_may_follow = u64::from(self.at > 0 && self.bytes[self.at - 1] == b'"');
         let odd = opens & !(begins | first_may_follow);
-        if let (Quotes::Fine | Quotes::Open(_), Some(bit)) = (self.quotes, ones(odd).next()) {
-            self.quotes = Quotes::Odd(self.at + bit);
-        }
-        if !matches!(self.quotes, Quotes::Odd(_)) && quotes != 0 {
-            let last = BLOCK - 1 - quotes.leading_zeros() as usize;
-            self.quotes = if inside >> (BLOCK - 1) == 1 { Quotes::Open(self.at + last) } else { Quotes::Fine };
+        if odd != 0 && self.quotes == Quotes::Fine {
+            self.quotes = Quotes::Odd(self.at + odd.trailing_zeros() as usize);
         }
     }
 }
@@ -215,7 +215,7 @@ impl<const N: usize> WithPlaces for Blocks<'_, '_, N> {
 impl<'b, const N: usize> Iterator for Scanner<'b, N> {
     type Item = Record<'b, N>;
 
-    #[inline]
+    #[inline(always)]
     fn next(&mut self) -> Option<Record<'b, N>> {
         if self.is_too_long || self.done == self.firsts.len() && !self.find_more() {
             return None;
@@ -228,11 +228,12 @@ impl<'b, const N: usize> Iterator for Scanner<'b, N> {
             self.is_too_long = true;
             return None;
         }
+        let text_end = if self.bytes[start..end].ends_with(b"\r") { end - 1 } else { end };
         let mut record =
             Record { line: self.line, start, end: (end + 1).min(self.bytes.len()), fields: [b"".as_slice(); N] };
         for (field, place) in record.fields.iter_mut().zip(self.places) {
             if let Some(&[from, behind]) = starts.get(place..).and_then(|rest| rest.first_chunk()) {
-                *field = unquoted(&self.bytes[from as usize..behind as usize - 1]);
+                *field = unquoted(&self.bytes[from as usize..text_end.min(behind as usize - 1)]);
             }
         }
         self.line += 1;
@@ -245,10 +246,9 @@ impl<'b, const N: usize> Iterator for Scanner<'b, N> {
     }
 }
 
-/// A field without its quotes and without the `\r` of its line.
-#[inline]
+/// A field without its quotes.
+#[inline(always)]
 fn unquoted(field: &[u8]) -> &[u8] {
-    let field = field.strip_suffix(b"\r").unwrap_or(field);
     match field {
         [b'"', text @ .., b'"'] | [b'"', text @ ..] => text,
         _ => field,

@@ -16,6 +16,10 @@ use crate::{PipelineError, Progress, Work, freshness};
 /// Missions that are read at a time, per thread: while one is taken in, another is parsed.
 const READERS_A_THREAD: usize = 2;
 
+/// Missions that are stored in one transaction, of which each ends with looking for rows without a check. What a kill takes are so
+/// many readings at most.
+const STORED_AT_ONCE: usize = 16;
+
 /// What is recorded of a mission that is not there.
 const MISSING: &str =
     "not there when it was last looked for; what came from it is kept: bring it back, or run with --forget-missing";
@@ -29,10 +33,13 @@ struct Read {
     outcome: Outcome,
 }
 
+/// A mission and its reading key.
+type Reading = (MissionReading, String);
+
 enum Outcome {
     /// Its content is as it was; with a stamp where it had to be read to know.
     Known(Option<FileStamp>),
-    New(Box<MissionReading>, String),
+    New(Box<Reading>),
     Unreadable(Box<FileRecord>),
 }
 
@@ -69,7 +76,7 @@ pub(crate) fn ingest(
         let outcome = if of_before.is_some_and(|f| f.reading_key == key) {
             Outcome::Known(content.stamp)
         } else {
-            Outcome::New(Box::new(mission::read(source, &content, &study.missions)), key)
+            Outcome::New(Box::new((mission::read(source, &content, &study.missions), key)))
         };
         let blake3 = content.blake3.clone();
         reader.recycle(content);
@@ -77,17 +84,19 @@ pub(crate) fn ingest(
     };
     // The first path of every content.
     let mut contents: BTreeMap<String, String> = BTreeMap::new();
-    let mut read_now = 0;
+    let (mut new, mut read_now) = (Vec::new(), 0);
     in_order(
         &wanted,
         READERS_A_THREAD * rayon::current_num_threads(),
         read,
         |Read { path, known_as, blake3, outcome }| {
             if progress.stop() {
+                put(store, &mut new)?;
                 return Err(PipelineError::Interrupted);
             }
             match (outcome, contents.get(&blake3)) {
                 (Outcome::Unreadable(record), _) => {
+                    put(store, &mut new)?;
                     store.put_file(&record, &refusal_key(&record))?;
                     read_now += 1;
                 }
@@ -95,23 +104,24 @@ pub(crate) fn ingest(
                     let message = format!("the same content as {first}, under another name; remove one of them");
                     let finding = Finding::whole(FindingKind::Overlap, message);
                     let record = FileRecord::refused(&path, FileKind::Mission, &blake3, 0, finding);
+                    put(store, &mut new)?;
                     store.put_file(&record, &refusal_key(&record))?;
                 }
-                (outcome, None) => {
-                    match outcome {
-                        Outcome::New(reading, key) => {
-                            store.put_mission(&reading, &key)?;
-                            read_now += 1;
-                        }
-                        Outcome::Known(stamp) => {
-                            if let Some(from) = known_as.filter(|from| *from != path) {
-                                store.move_file(&from, &path)?;
-                            }
-                            if let Some(stamp) = stamp {
-                                store.put_stamp(&path, &stamp)?;
-                            }
-                        }
-                        Outcome::Unreadable(_) => {}
+                (Outcome::New(reading), None) => {
+                    new.push(*reading);
+                    if new.len() == STORED_AT_ONCE {
+                        put(store, &mut new)?;
+                    }
+                    read_now += 1;
+                    contents.insert(blake3, path);
+                }
+                (Outcome::Known(stamp), None) => {
+                    put(store, &mut new)?;
+                    if let Some(from) = known_as.filter(|from| *from != path) {
+                        store.move_file(&from, &path)?;
+                    }
+                    if let Some(stamp) = stamp {
+                        store.put_stamp(&path, &stamp)?;
                     }
                     contents.insert(blake3, path);
                 }
@@ -120,6 +130,7 @@ pub(crate) fn ingest(
             Ok(())
         },
     )?;
+    put(store, &mut new)?;
     progress.end();
     let paths = found.missions.len() + found.refused.len();
     for record in overlapping.values().chain(&found.refused) {
@@ -136,6 +147,15 @@ pub(crate) fn ingest(
     let kept = if missing == 0 { String::new() } else { format!(", {missing} missing and kept") };
     let message = format!("{total} missions: {read_now} read now, {forgotten} no longer there{kept}");
     Ok(Work { computed: read_now, withdrawn: forgotten, total, message })
+}
+
+/// Stores the readings that are new so far, in the order of their missions.
+fn put(store: &mut Store, new: &mut Vec<Reading>) -> Result<(), PipelineError> {
+    if !new.is_empty() {
+        store.put_missions(new.iter().map(|(reading, key)| (reading, key.as_str())))?;
+        new.clear();
+    }
+    Ok(())
 }
 
 /// Says that samples are to be joined anew, where `ingest` runs alone.

@@ -2,12 +2,12 @@
 
 use chrono::{DateTime, Utc};
 use ingest::{FileKind, FileRecord, FileStamp, Finding, FindingKind};
-use sqlx::Row;
 use sqlx::sqlite::{SqliteConnection, SqliteRow};
+use sqlx::{AssertSqlSafe, Row};
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::checks::{commit, whole};
-use crate::row::{Insert, begin, count, optional_time, time, time_text, word};
+use crate::row::{Insert, begin, count, optional_time, put_all, time, time_text, word};
 use crate::{Store, StoreError};
 
 /// A file that the database holds.
@@ -201,13 +201,16 @@ pub(crate) async fn replace_file(
     file: &FileRecord,
     reading_key: &str,
 ) -> Result<i64, StoreError> {
-    let same = sqlx::query("SELECT source_file_id FROM source_file WHERE path = ? AND reading_key = ?")
-        .bind(&file.path)
-        .bind(reading_key)
-        .fetch_optional(&mut *c)
-        .await?;
-    if same.is_none() {
-        sqlx::query("DELETE FROM source_file WHERE path = ?").bind(&file.path).execute(&mut *c).await?;
+    let sql = "SELECT source_file_id, reading_key = ? AS same FROM source_file WHERE path = ?";
+    let known = sqlx::query(sql).bind(reading_key).bind(&file.path).fetch_optional(&mut *c).await?;
+    if let Some(known) = known {
+        let tables: &[&str] =
+            if known.try_get("same")? { &["file_stamp", "data_quality", "mission_segment"] } else { &["source_file"] };
+        for table in tables {
+            // The text is built from constants alone.
+            let sql = AssertSqlSafe(format!("DELETE FROM {table} WHERE source_file_id = ?"));
+            sqlx::query(sql).bind(known.try_get::<i64, _>("source_file_id")?).execute(&mut *c).await?;
+        }
     }
     let sql = "INSERT INTO source_file (path, kind, blake3, bytes, rows, first_utc, last_utc, outcome, reading_key)
         VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)
@@ -228,24 +231,20 @@ pub(crate) async fn replace_file(
         .fetch_one(&mut *c)
         .await?
         .try_get("source_file_id")?;
-    sqlx::query("DELETE FROM file_stamp WHERE source_file_id = ?").bind(id).execute(&mut *c).await?;
     if let Some(stamp) = &file.stamp {
         insert_stamp(c, id, stamp).await?;
     }
-    sqlx::query("DELETE FROM data_quality WHERE source_file_id = ?").bind(id).execute(&mut *c).await?;
-    sqlx::query("DELETE FROM mission_segment WHERE source_file_id = ?").bind(id).execute(&mut *c).await?;
-    for (position, finding) in file.findings.iter().enumerate() {
-        Insert::into("data_quality")
-            .set("source_file_id", id)?
-            .set("position", position as i64)?
+    let findings: Vec<(i64, &Finding)> = (0..).zip(&file.findings).collect();
+    put_all(c, "data_quality", &findings, |row, (position, finding)| {
+        row.set("source_file_id", id)?
+            .set("position", *position)?
             .set("kind", finding.kind.name())?
             .set("count", finding.count.cast_signed())?
             .set("line", finding.line.map(u64::cast_signed))?
             .set("column_name", finding.column.as_deref())?
-            .set("message", finding.message.as_str())?
-            .execute(c)
-            .await?;
-    }
+            .set("message", finding.message.as_str())
+    })
+    .await?;
     Ok(id)
 }
 

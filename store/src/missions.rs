@@ -8,31 +8,26 @@ use sqlx::sqlite::{SqliteConnection, SqliteRow};
 
 use crate::checks::{commit, whole};
 use crate::files::replace_file;
-use crate::row::{Insert, begin, count, time, time_text};
+use crate::row::{Insert, begin, count, put_all, time, time_text};
 use crate::{Store, StoreError};
 
 /// A stored segment: its mission's reading key, and the segment or why there is none.
 pub type StoredSegment = (String, Result<Segment, ExcludedSegment>);
 
 impl Store {
-    /// Puts a mission into the database: its file, its segments, and what passengers and doors do in time. Replaces the
-    /// mission of the same path, with its samples and whatever came from them.
+    /// Puts missions with their reading keys into the database, all in one transaction: their files, their segments, and what
+    /// passengers and doors do in time. Each replaces the mission of the same path, with its samples and whatever came from them.
     ///
     /// # Errors
     /// [`StoreError::Refused`], [`StoreError::Damaged`].
-    pub fn put_mission(&mut self, reading: &MissionReading, reading_key: &str) -> Result<(), StoreError> {
+    pub fn put_missions<'m>(
+        &mut self,
+        missions: impl IntoIterator<Item = (&'m MissionReading, &'m str)>,
+    ) -> Result<(), StoreError> {
         self.drive(async |c| {
             let mut tx = begin(c).await?;
-            let id = replace_file(&mut tx, &reading.file, reading_key).await?;
-            for segment in &reading.segments {
-                insert_segment(&mut tx, id, segment).await?;
-            }
-            for excluded in &reading.excluded {
-                insert_excluded(&mut tx, id, excluded).await?;
-            }
-            if !reading.loads.is_empty() {
-                let row = Insert::replacing("mission_load").set("source_file_id", id)?;
-                row.set("loads", encode_loads(&reading.loads))?.execute(&mut tx).await?;
+            for (reading, reading_key) in missions {
+                put_mission(&mut tx, reading, reading_key).await?;
             }
             commit(tx).await
         })
@@ -84,37 +79,38 @@ impl Store {
     }
 }
 
-async fn insert_segment(c: &mut SqliteConnection, file: i64, s: &Segment) -> Result<(), StoreError> {
-    Insert::into("mission_segment")
-        .set("source_file_id", file)?
-        .set("segment", s.segment)?
-        .set("mission", s.mission.as_str())?
-        .set("bus", s.bus)?
-        .set("start_utc", time_text(s.start))?
-        .set("duration_s", s.duration_s)?
-        .set("passengers", s.passengers)?
-        .set("door_open_fraction", s.door_open_fraction)?
-        .set("distance_m", s.distance_m)?
-        .set("vehicle_power_w", s.vehicle_power_w)?
-        .set("route", s.route.as_deref())?
-        .set("first_line", s.first_line.cast_signed())?
-        .set("last_line", s.last_line.cast_signed())?
-        .execute(c)
-        .await?;
-    Ok(())
-}
-
-async fn insert_excluded(c: &mut SqliteConnection, file: i64, e: &ExcludedSegment) -> Result<(), StoreError> {
-    Insert::into("mission_segment")
-        .set("source_file_id", file)?
-        .set("segment", e.segment)?
-        .set("mission", e.mission.as_str())?
-        .set("bus", e.bus)?
-        .set("start_utc", time_text(e.start))?
-        .set("duration_s", e.duration_s)?
-        .set("excluded", e.reason.as_str())?
-        .execute(c)
-        .await?;
+async fn put_mission(c: &mut SqliteConnection, reading: &MissionReading, reading_key: &str) -> Result<(), StoreError> {
+    let id = replace_file(c, &reading.file, reading_key).await?;
+    put_all(c, "mission_segment", &reading.segments, |row, s| {
+        row.set("source_file_id", id)?
+            .set("segment", s.segment)?
+            .set("mission", s.mission.as_str())?
+            .set("bus", s.bus)?
+            .set("start_utc", time_text(s.start))?
+            .set("duration_s", s.duration_s)?
+            .set("passengers", s.passengers)?
+            .set("door_open_fraction", s.door_open_fraction)?
+            .set("distance_m", s.distance_m)?
+            .set("vehicle_power_w", s.vehicle_power_w)?
+            .set("route", s.route.as_deref())?
+            .set("first_line", s.first_line.cast_signed())?
+            .set("last_line", s.last_line.cast_signed())
+    })
+    .await?;
+    put_all(c, "mission_segment", &reading.excluded, |row, e| {
+        row.set("source_file_id", id)?
+            .set("segment", e.segment)?
+            .set("mission", e.mission.as_str())?
+            .set("bus", e.bus)?
+            .set("start_utc", time_text(e.start))?
+            .set("duration_s", e.duration_s)?
+            .set("excluded", e.reason.as_str())
+    })
+    .await?;
+    if !reading.loads.is_empty() {
+        let row = Insert::replacing("mission_load").set("source_file_id", id)?;
+        row.set("loads", encode_loads(&reading.loads))?.execute(c).await?;
+    }
     Ok(())
 }
 

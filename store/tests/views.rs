@@ -168,7 +168,7 @@ fn averages(store: &mut Store, grid: &StoredGrid) -> Energy {
 /// Two files, four samples in January and July, two designs, one window.
 fn filled(store: &mut Store) {
     for path in ["a", "b"] {
-        store.put_mission(&mission(path, 3), "k1").unwrap();
+        store.put_missions([(&mission(path, 3), "k1")]).unwrap();
     }
     let samples = [sample(1, "a", 1), sample(2, "a", 1), sample(3, "b", 1), sample(4, "b", 7)];
     let weather = (file("w", FileKind::Weather), "wk".to_owned());
@@ -270,9 +270,9 @@ fn prop_a_changed_file_takes_its_samples_and_optima_along_and_an_unchanged_one_d
     let (_folder, mut store) = scratch();
     filled(&mut store);
     let points = |store: &mut Store| store.query_text("SELECT count(*) FROM optimum").unwrap()[0][0].clone();
-    store.put_mission(&mission("a", 1), "k1").unwrap();
+    store.put_missions([(&mission("a", 1), "k1")]).unwrap();
     assert_eq!(points(&mut store), "8");
-    store.put_mission(&mission("a", 1), "k2").unwrap();
+    store.put_missions([(&mission("a", 1), "k2")]).unwrap();
     assert_eq!(points(&mut store), "4");
     // Its two segments wait for weather again, beside three of the other mission.
     assert_eq!(store.unjoined_segments().unwrap(), 5);
@@ -292,7 +292,7 @@ fn prop_a_changed_file_takes_its_samples_and_optima_along_and_an_unchanged_one_d
 #[test]
 fn prop_segments_come_back_as_they_were() {
     let (_folder, mut store) = scratch();
-    store.put_mission(&mission("a", 2), "k1").unwrap();
+    store.put_missions([(&mission("a", 2), "k1")]).unwrap();
     let expected = [Ok(segment("a", 0)), Ok(segment("a", 1)), Err(excluded("a", 2))];
     assert_eq!(store.segments().unwrap(), expected.map(|s| ("k1".to_owned(), s)));
 }
@@ -403,7 +403,7 @@ proptest! {
     #[test]
     fn prop_weights_of_the_months_present_sum_to_one(counts in prop::array::uniform12(0_u8..9)) {
         let (_folder, mut store) = scratch();
-        store.put_mission(&mission("a", 0), "k").unwrap();
+        store.put_missions([(&mission("a", 0), "k")]).unwrap();
         let months = counts.iter().enumerate().flat_map(|(m, &n)| vec![m as u8 + 1; usize::from(n)]);
         let samples: Vec<Sample> = months.enumerate().map(|(i, month)| sample(i as i64, "a", month)).collect();
         store.put_samples(&samples, &[], &[]).unwrap();
@@ -416,7 +416,7 @@ proptest! {
 #[test]
 fn paper_the_weight_of_a_sample_is_the_days_of_its_month_over_365_and_samples() {
     let (_folder, mut store) = scratch();
-    store.put_mission(&mission("a", 0), "k").unwrap();
+    store.put_missions([(&mission("a", 0), "k")]).unwrap();
     let months = (1..=12_u8).flat_map(|month| vec![month; usize::from(month)]);
     let samples: Vec<Sample> = months.enumerate().map(|(i, month)| sample(i as i64, "a", month)).collect();
     store.put_samples(&samples, &[], &[]).unwrap();

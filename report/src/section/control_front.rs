@@ -38,22 +38,19 @@ pub(super) fn controllers_chart(title: &str, told: &str, [x, y]: [&str; 2], fron
         }
     };
     let mut line = |front: &Front| Mark::line(&front.name, style(front), front.points.clone());
-    // A single point has its name beside it, on the left where another one lies in its way, and beneath all points.
     let all = || fronts.iter().flat_map(|front| &front.points).copied();
     let (wide, high) = all().fold((0.0, 0.0), |(w, h), (x, y)| (f64::max(w, x), f64::max(h, y)));
+    let names = names(fronts, (0.01 * wide, 0.02 * high));
+    // A single point has its name beside it, on the left where another one lies in its way, and beneath all points.
     let in_way = |(x, y): (f64, f64)| {
         let beside = |(other_x, other_y): (f64, f64)| {
             (0.001 * wide..0.25 * wide).contains(&(other_x - x)) && (other_y - y).abs() < 0.06 * high
         };
-        fronts.iter().filter(|front| front.points.len() == 1).any(|front| beside(front.points[0]))
+        names.iter().any(|(at, _)| beside(*at))
     };
-    let name = |front: &Front| match front.points.as_slice() {
-        [at] => {
-            let side = if in_way(*at) { Side::Below } else { Side::Above };
-            let name = front.name.clone();
-            Some(Mark::Label { at: *at, of: vec![name.clone()], name, colour: LIMIT, side })
-        }
-        _ => None,
+    let label = |(at, of): &((f64, f64), Vec<String>)| {
+        let side = if in_way(*at) { Side::Below } else { Side::Above };
+        Mark::Label { at: *at, of: of.clone(), name: of.join(", "), colour: LIMIT, side }
     };
     Chart {
         title: title.to_owned(),
@@ -62,11 +59,27 @@ pub(super) fn controllers_chart(title: &str, told: &str, [x, y]: [&str; 2], fron
         panels: vec![Panel {
             x: Axis::new(x).from(0.0),
             y: Axis::new(y).from(0.0),
-            marks: fronts.iter().filter_map(name).chain(fronts.iter().map(&mut line)).collect(),
+            marks: names.iter().map(label).chain(fronts.iter().map(&mut line)).collect(),
             ..Panel::default()
         }],
         height: 150.0,
     }
+}
+
+/// The names of single points, of those that lie within so much of each other together, at the first of them.
+fn names(fronts: &[Front], (width, height): (f64, f64)) -> Vec<((f64, f64), Vec<String>)> {
+    let mut names: Vec<((f64, f64), Vec<String>)> = Vec::new();
+    for front in fronts {
+        let [(x, y)] = front.points[..] else { continue };
+        let here = |((other_x, other_y), _): &&mut ((f64, f64), Vec<String>)| {
+            (*other_x - x).abs() <= width && (*other_y - y).abs() <= height
+        };
+        match names.iter_mut().find(here) {
+            Some((_, names)) => names.push(front.name.clone()),
+            None => names.push(((x, y), vec![front.name.clone()])),
+        }
+    }
+    names
 }
 
 /// How a controller compares with extracted profiles of the same annual power.
@@ -134,6 +147,18 @@ fn at(line: &[(f64, f64)], power_w: f64) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn prop_points_that_coincide_have_one_name_and_lines_none() {
+        let fronts = [
+            Front::new("a", vec![(1.0, 2.0)]),
+            Front::new("line", vec![(1.0, 2.0), (2.0, 1.0)]),
+            Front::new("b", vec![(3.0, 2.0)]),
+            Front::new("c", vec![(1.01, 1.99)]),
+        ];
+        let joined: Vec<String> = names(&fronts, (0.05, 0.05)).iter().map(|(_, names)| names.join(", ")).collect();
+        assert_eq!(joined, ["a, c", "b"]);
+    }
 
     #[test]
     fn prop_discomfort_at_a_power_lies_on_the_line() {
