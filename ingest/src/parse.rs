@@ -11,8 +11,11 @@ pub(crate) fn text(field: &[u8]) -> Option<&str> {
 /// The number of a field; the same as [`number`] of its text, sooner for what most tools write.
 #[inline]
 pub(crate) fn number_of(field: &[u8]) -> Option<f64> {
-    if field == b"NaN" {
-        return Some(f64::NAN);
+    match field {
+        b"NaN" => return Some(f64::NAN),
+        // A bus that stands is at 0 m/s.
+        [digit @ b'0'..=b'9'] => return Some(f64::from(digit - b'0')),
+        _ => {}
     }
     match fast_float2::parse(field) {
         Ok(value) if f64::is_finite(value) => Some(value),

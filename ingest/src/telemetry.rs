@@ -112,13 +112,14 @@ impl<'b> Telemetry<'b> {
     pub fn for_each(&self, mut row: impl FnMut(Row<'b>)) -> Result<u64, Finding> {
         let mut scanner = Scanner::new(self.bytes, b',', &self.places);
         let mut count = 0;
-        let (mut last_passengers, mut last_ambient_k) = (Number::default(), Number::default());
+        let (mut last_time, mut last_passengers, mut last_ambient_k) =
+            (Second::default(), Number::default(), Number::default());
         for record in scanner.by_ref().take(MOST_ROWS + 2) {
             let [time, passengers, door, ambient_k, speed_m_s, power_w, route] = record.fields;
             count += 1;
             row(Row {
                 line: record.line,
-                time_s: second(time),
+                time_s: last_time.or_of(time),
                 passengers: last_passengers.or_of(passengers),
                 door: match door {
                     b"0" => Some(0.0),
@@ -155,13 +156,29 @@ impl<'b> Number<'b> {
     }
 }
 
-/// Ten digits, as nearly all are; else as [`parse::second`] reads them.
-fn second(field: &[u8]) -> Option<i64> {
-    match <[u8; 10]>::try_from(field) {
-        Ok(digits) if digits.iter().all(u8::is_ascii_digit) => {
-            Some(digits.iter().fold(0, |sum, digit| 10 * sum + i64::from(digit - b'0')))
+/// The first eight of ten digits of a second, which stay for up to a hundred rows.
+#[derive(Debug, Default)]
+struct Second {
+    digits: [u8; 8],
+    hundreds: i64,
+}
+
+impl Second {
+    /// The second of a field: ten digits, as nearly all are, or as [`parse::second`] reads others.
+    #[inline]
+    fn or_of(&mut self, field: &[u8]) -> Option<i64> {
+        let value = |digit: u8| i64::from(digit - b'0');
+        let other = || parse::second(text(field)?);
+        let Some((digits, &[tens @ b'0'..=b'9', ones @ b'0'..=b'9'])) = field.split_first_chunk() else {
+            return other();
+        };
+        if *digits != self.digits {
+            if !digits.iter().all(u8::is_ascii_digit) {
+                return other();
+            }
+            *self = Self { digits: *digits, hundreds: digits.iter().fold(0, |sum, digit| 10 * sum + value(*digit)) };
         }
-        _ => parse::second(text(field)?),
+        Some(100 * self.hundreds + 10 * value(tens) + value(ones))
     }
 }
 

@@ -13,8 +13,8 @@ use crate::inputs::{Inputs, refusal_key};
 use crate::missing::Gone;
 use crate::{PipelineError, Progress, Work, freshness};
 
-/// Missions that are read at a time, per thread: while one is taken in, another is parsed.
-const READERS_A_THREAD: usize = 2;
+/// Missions that are read at a time, beside one a thread: while one is taken in, others are parsed.
+const READERS_BESIDE: usize = 1;
 
 /// Missions that are stored in one transaction, of which each ends with looking for rows without a check. What a kill takes are so
 /// many readings at most.
@@ -87,7 +87,7 @@ pub(crate) fn ingest(
     let (mut new, mut read_now) = (Vec::new(), 0);
     in_order(
         &wanted,
-        READERS_A_THREAD * rayon::current_num_threads(),
+        READERS_BESIDE + rayon::current_num_threads(),
         read,
         |Read { path, known_as, blake3, outcome }| {
             if progress.stop() {
