@@ -116,7 +116,6 @@ pub(crate) fn ingest(
                     contents.insert(blake3, path);
                 }
                 (Outcome::Known(stamp), None) => {
-                    put(store, &mut new)?;
                     if let Some(from) = known_as.filter(|from| *from != path) {
                         store.move_file(&from, &path)?;
                     }
@@ -149,7 +148,8 @@ pub(crate) fn ingest(
     Ok(Work { computed: read_now, withdrawn: forgotten, total, message })
 }
 
-/// Stores the readings that are new so far, in the order of their missions.
+/// Stores the readings that are new so far: before another file gets its row, so that rows stand in the order of missions, and
+/// when nothing follows. Missions that are known have their rows already.
 fn put(store: &mut Store, new: &mut Vec<Reading>) -> Result<(), PipelineError> {
     if !new.is_empty() {
         store.put_missions(new.iter().map(|(reading, key)| (reading, key.as_str())))?;
